@@ -1,0 +1,170 @@
+#include "core/boundary/wall_surface.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "core/error.h"
+
+namespace molten {
+namespace {
+
+constexpr double flat =
+    1e-6;  // sine of the angle up to which a convex edge is flat: round-off of single-precision files
+
+/// Two facets whose normals are a and b meet along `edge` (unit, counter-clockwise in a's facet).
+Crease crease_between(const Point<3>& a, const Point<3>& b, const Point<3>& edge) {
+  const bool folded = a.dot(b) < -1 + flat, degenerate = a.isZero(0) || b.isZero(0);
+  return folded || degenerate || a.cross(b).dot(edge) > flat ? Crease::convex : Crease::smooth;
+}
+
+/// Segment a ends where b starts.
+Crease crease_between(const Point<2>& a, const Point<2>& b) {
+  const double turn = a.x() * b.y() - a.y() * b.x();  // negative: away from the left, where the fluid is
+  return turn < -flat || (a.dot(b) < 0 && turn <= flat) ? Crease::convex : Crease::smooth;
+}
+
+double corner_weight(const Facet<2>&, int) { return 1; }
+
+double corner_weight(const Facet<3>& f, int k) {
+  const Point<3> e = f.corner[(k + 1) % 3] - f.corner[k], g = f.corner[(k + 2) % 3] - f.corner[k];
+  return std::atan2(e.cross(g).norm(), e.dot(g));
+}
+
+struct Side {
+  std::int32_t low, high, facet;
+  std::int8_t edge, reversed;
+};
+
+}  // namespace
+
+template <int Dim> WallSurface<Dim>::WallSurface(const std::vector<Wall<Dim>>& walls) {
+  for (std::size_t w = 0; w < walls.size(); ++w)
+    if (!walls[w].is_plane) add(walls[w], static_cast<std::int32_t>(w));
+  for (const auto& f : facets_)
+    for (const auto& c : f.corner) extent_ = std::max(extent_, c.template lpNorm<Eigen::Infinity>());
+  join_vertices();
+  if constexpr (Dim == 3) join_edges();
+  sum_normals();
+  mark_vertices();
+}
+
+template <int Dim> void WallSurface<Dim>::add(const Wall<Dim>& wall, std::int32_t index) {
+  for (const auto& f : wall.facets) {
+    std::array<Point<Dim>, Dim> corner;
+    for (int k = 0; k < Dim; ++k) {
+      const std::string where = "wall " + std::to_string(index) + ": ";
+      if (f[k] < 0 || static_cast<std::size_t>(f[k]) >= wall.vertices.size())
+        throw Error(ExitCode::geometry,
+                    where + "a facet names vertex " + std::to_string(f[k]) + ", which is not there");
+      corner[k] = wall.vertices[f[k]];
+      if (!corner[k].allFinite())
+        throw Error(ExitCode::geometry, where + "vertex " + std::to_string(f[k]) + " is not finite");
+    }
+    facets_.push_back(make_facet<Dim>(corner));
+    wall_.push_back(index);
+  }
+}
+
+template <int Dim> void WallSurface<Dim>::join_vertices() {
+  const auto corner = [&](std::int32_t c) -> const Point<Dim>& { return facets_[c / Dim].corner[c % Dim]; };
+  const auto before = [&](std::int32_t a, std::int32_t b) {
+    for (int k = 0; k < Dim; ++k)
+      if (corner(a)[k] != corner(b)[k]) return corner(a)[k] < corner(b)[k];
+    return false;
+  };
+  std::vector<std::int32_t> order(facets_.size() * Dim);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), before);
+  vertex_.resize(facets_.size());
+  std::int32_t count = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i > 0 && before(order[i - 1], order[i])) ++count;
+    vertex_[order[i] / Dim][order[i] % Dim] = count;
+  }
+  vertex_normal_.assign(order.empty() ? 0 : count + 1, Point<Dim>::Zero());
+  vertex_crease_.assign(vertex_normal_.size(), Crease::smooth);
+}
+
+template <int Dim> void WallSurface<Dim>::join_edges() {
+  std::vector<Side> sides;
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = vertex_[f][k], b = vertex_[f][(k + 1) % 3];
+      sides.push_back(
+          {std::min(a, b), std::max(a, b), static_cast<std::int32_t>(f), static_cast<std::int8_t>(k), a > b});
+    }
+  const auto same = [](const Side& s, const Side& t) { return s.low == t.low && s.high == t.high; };
+  std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
+    return std::tie(s.low, s.high, s.facet, s.edge) < std::tie(t.low, t.high, t.facet, t.edge);
+  });
+  neighbour_.assign(facets_.size(), {-1, -1, -1});
+  edge_crease_.assign(facets_.size(), {Crease::rim, Crease::rim, Crease::rim});
+  for (std::size_t i = 0, end; i < sides.size(); i = end) {
+    for (end = i + 1; end < sides.size() && same(sides[i], sides[end]);) ++end;
+    if (end - i != 2 || sides[i].reversed == sides[i + 1].reversed) continue;  // a rim, or facets that do not fit
+    for (const auto& [here, there] : {std::pair(sides[i], sides[i + 1]), std::pair(sides[i + 1], sides[i])}) {
+      const Facet<Dim>&f = facets_[here.facet], &g = facets_[there.facet];
+      const Point<Dim> e = (f.corner[(here.edge + 1) % 3] - f.corner[here.edge]).normalized();
+      neighbour_[here.facet][here.edge] = there.facet;
+      if constexpr (Dim == 3) edge_crease_[here.facet][here.edge] = crease_between(f.normal, g.normal, e);
+    }
+  }
+}
+
+template <int Dim> void WallSurface<Dim>::sum_normals() {
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    for (int k = 0; k < Dim; ++k) vertex_normal_[vertex_[f][k]] += corner_weight(facets_[f], k) * facets_[f].normal;
+}
+
+/// A vertex is the worst of what ends at it.
+template <int Dim> void WallSurface<Dim>::mark_vertices() {
+  if constexpr (Dim == 3) {
+    for (std::size_t f = 0; f < facets_.size(); ++f)
+      for (int c = 0; c < 6; ++c) {
+        Crease& worst = vertex_crease_[vertex_[f][(c / 2 + c % 2) % 3]];
+        worst = std::max(worst, edge_crease_[f][c / 2]);
+      }
+  } else {
+    std::vector<std::array<std::int32_t, 4>> ends(vertex_normal_.size(),
+                                                  {0, 0, -1, -1});  // counts and last: ends, starts
+    for (std::size_t f = 0; f < facets_.size(); ++f)
+      for (int k = 0; k < 2; ++k) {
+        ++ends[vertex_[f][k]][1 - k];
+        ends[vertex_[f][k]][3 - k] = static_cast<std::int32_t>(f);
+      }
+    for (std::size_t v = 0; v < ends.size(); ++v) {
+      const auto [n_ends, n_starts, before, after] = ends[v];
+      const bool joined = n_ends == 1 && n_starts == 1;
+      vertex_crease_[v] = joined ? crease_between(facets_[before].normal, facets_[after].normal) : Crease::rim;
+    }
+  }
+}
+
+template <int Dim> Crease WallSurface<Dim>::crease(std::int32_t facet, Feature feature, int index) const {
+  switch (feature) {
+    case Feature::face:
+      return Crease::smooth;
+    case Feature::edge:
+      return edge_crease_[facet][index];
+    case Feature::vertex:
+      break;
+  }
+  return vertex_crease_[vertex_[facet][index]];
+}
+
+template <int Dim> Point<Dim> WallSurface<Dim>::pseudo_normal(std::int32_t facet, Feature feature, int index) const {
+  const Point<Dim>& own = facets_[facet].normal;
+  if (feature == Feature::face) return own;
+  if (feature == Feature::vertex) return vertex_normal_[vertex_[facet][index]];
+  const std::int32_t other = neighbour_[facet][index];
+  return other < 0 ? own : Point<Dim>(own + facets_[other].normal);
+}
+
+template class WallSurface<2>;
+template class WallSurface<3>;
+
+}  // namespace molten

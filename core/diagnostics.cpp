@@ -1,0 +1,185 @@
+#include "core/diagnostics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <span>
+
+#include "core/error.h"
+#include "core/particle_pass.h"
+
+namespace molten {
+
+template <int Dim, class Real>
+Diagnostics diagnose(const State<Dim, Real>& s) {
+  const Particles<Dim, Real>& p = s.particles;
+  const auto x = p[position];
+  const auto v = p[velocity];
+  const double m = s.parameters.particle_mass;
+  Diagnostics zero;
+  zero.lower.fill(std::numeric_limits<double>::max());
+  zero.upper.fill(std::numeric_limits<double>::lowest());
+  Diagnostics total = reduce_slots(p.slots(), zero, [&](std::size_t slot, Diagnostics& d) {
+    if (p.is_padding(slot)) return;
+    double v2 = 0;
+    for (int k = 0; k < Dim; ++k) {
+      v2 += double(v[k][slot]) * v[k][slot];
+      d.potential_energy -= m * s.parameters.gravity[k] * x[k][slot];
+      d.momentum[k] += m * v[k][slot];
+      d.lower[k] = std::min(d.lower[k], x[k][slot]);
+      d.upper[k] = std::max(d.upper[k], x[k][slot]);
+    }
+    ++d.particles;
+    d.kinetic_energy += m * v2 / 2;
+    d.max_speed = std::max(d.max_speed, std::sqrt(v2));
+    d.max_compression = std::max(d.max_compression, std::abs(double(p[compression][0][slot])));
+    if (s.features.heat) d.heat += m * p[temperature][0][slot];
+  }, [](Diagnostics& a, const Diagnostics& b) {
+    a.particles += b.particles;
+    a.kinetic_energy += b.kinetic_energy;
+    a.potential_energy += b.potential_energy;
+    a.heat += b.heat;
+    for (int k = 0; k < Dim; ++k) {
+      a.momentum[k] += b.momentum[k];
+      a.lower[k] = std::min(a.lower[k], b.lower[k]);
+      a.upper[k] = std::max(a.upper[k], b.upper[k]);
+    }
+    a.max_speed = std::max(a.max_speed, b.max_speed);
+    a.max_compression = std::max(a.max_compression, b.max_compression);
+  });
+  for (int k = 0; k < 3; ++k)
+    if (k >= Dim || total.particles == 0) total.lower[k] = total.upper[k] = 0;
+  return total;
+}
+
+std::vector<std::string> available_fields(const Features& f) {
+  std::vector<std::string> names{"velocity", "density", "pressure"};
+  if (f.heat) names.push_back("temperature");
+  if (f.stress) names.push_back("viscosity");
+  return names;
+}
+
+namespace {
+
+/// The slots of the particles in id order.
+template <int Dim, class Real>
+std::vector<std::uint32_t> slots_by_id(const Particles<Dim, Real>& p) {
+  std::vector<std::uint32_t> slots;
+  for (std::size_t s = 0; s < p.slots(); ++s)
+    if (!p.is_padding(s)) slots.push_back(static_cast<std::uint32_t>(s));
+  const auto ids = p[id][0];
+  std::sort(slots.begin(), slots.end(), [ids](auto a, auto b) { return ids[a] < ids[b]; });
+  return slots;
+}
+
+template <int Dim, class Real>
+SnapshotField read_field(const State<Dim, Real>& s, const std::string& name, std::span<const std::uint32_t> slots) {
+  const Particles<Dim, Real>& p = s.particles;
+  SnapshotField field;
+  const auto scalar = [&](std::string unit, std::string meaning, auto&& of) {
+    field = {name, std::move(unit), std::move(meaning), 1, std::vector<double>(slots.size())};
+    for (std::size_t k = 0; k < slots.size(); ++k) field.values[k] = of(slots[k]);
+  };
+  const double rho0 = s.parameters.eos.rest_density;
+  const auto delta = p[compression][0];
+  if (name == "density") scalar("kg/m3", "density", [&](auto k) { return rho0 * (1 + delta[k]); });
+  if (name == "pressure") scalar("Pa", "pressure", [&](auto k) { return s.parameters.eos.pressure(delta[k]); });
+  if (name == "temperature")
+    scalar(std::string(temperature.unit), "temperature", [&](auto k) { return p[temperature][0][k]; });
+  if (name == "viscosity") scalar("Pa s", "dynamic viscosity", [&](auto k) { return p[viscosity][0][k]; });
+  if (name == "velocity") {
+    field = {name, "m/s", "velocity", 3, std::vector<double>(3 * slots.size(), 0.0)};
+    for (std::size_t k = 0; k < slots.size(); ++k)
+      for (int d = 0; d < Dim; ++d) field.values[3 * k + d] = p[velocity][d][slots[k]];
+  }
+  return field;
+}
+
+}  // namespace
+
+template <int Dim, class Real>
+Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>& fields) {
+  const std::vector<std::string> available = available_fields(s.features);
+  Snapshot shot;
+  shot.time = s.clock.time;
+  shot.step = s.clock.step;
+  shot.dimensions = Dim;
+  shot.spacing = s.parameters.spacing;
+  const std::vector<std::uint32_t> slots = slots_by_id(s.particles);
+  for (const std::uint32_t slot : slots) {
+    shot.id.push_back(s.particles[id][0][slot]);
+    for (int d = 0; d < 3; ++d) shot.position.push_back(d < Dim ? s.particles[position][d][slot] : 0.0);
+  }
+  for (const std::string& name : fields.empty() ? available : fields) {
+    if (std::find(available.begin(), available.end(), name) == available.end())
+      throw Error(ExitCode::usage, "output.fields: this scene has no field '" + name + "'; it has " +
+                                       std::accumulate(available.begin() + 1, available.end(), available[0],
+                                                       [](auto a, auto& b) { return a + ", " + b; }));
+    shot.fields.push_back(read_field(s, name, std::span<const std::uint32_t>(slots)));
+  }
+  return shot;
+}
+
+template <int Dim, class Real>
+std::int64_t count_pairs(const State<Dim, Real>& s) {
+  const auto local = s.particles[local_position];
+  const auto chunks = s.neighbours.chunks();
+  const double support2 = s.parameters.support_radius * s.parameters.support_radius;
+  std::vector<std::int64_t> counts(chunks.size(), 0);
+  for_each_piece(chunks.size(), [&](std::size_t k) {
+    const ClusterChunk& chunk = chunks[k];
+    for (std::uint32_t c = chunk.begin; c < chunk.end; ++c)
+      for (std::uint32_t r = chunk.run_begin[c - chunk.begin]; r < chunk.run_begin[c - chunk.begin + 1]; ++r) {
+        const ClusterRun& run = chunk.runs[r];
+        for (std::size_t i = c * cluster_size; i < (c + std::size_t{1}) * cluster_size; ++i)
+          for (std::size_t j = run.first * cluster_size; j < (std::size_t{run.first} + run.count) * cluster_size; ++j) {
+            double r2 = 0;
+            for (int d = 0; d < Dim; ++d) {
+              const double dx = local[d][i] - s.neighbours.grid().shift(d, run.offset[d]) - local[d][j];
+              r2 += dx * dx;
+            }
+            counts[k] += r2 < support2 && i != j && !s.particles.is_padding(i) && !s.particles.is_padding(j);
+          }
+      }
+  });
+  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
+}
+
+template <int Dim, class Real>
+std::string find_non_finite(const State<Dim, Real>& s) {
+  const Particles<Dim, Real>& p = s.particles;
+  const auto likely_cause = [&](std::string_view field) -> std::string {
+    if (field == viscosity.name || field == stress.name)
+      return "the rheology gave no finite viscosity; check fluid.rheology";
+    if (field == temperature.name || field == temperature_rate.name)
+      return "heat conduction ran away; lower numerics.courant.conduction or numerics.fixed_dt";
+    return std::string("the time step was too large for the ") + name_of(s.clock.limit) +
+           " limit or particles met at high speed; lower numerics.courant, raise numerics.sound_speed or add numerics.xsph";
+  };
+  std::string line;
+  for (const std::uint32_t slot : slots_by_id(p)) {
+    for_each_field([&]<class F>(F) {
+      if (!line.empty() || !p.has(F{}) || F::storage == Storage::id) return;
+      for (const auto* column : p[F{}].c)
+        if (!std::isfinite(static_cast<double>(column[slot])) || std::abs(static_cast<double>(column[slot])) > 1e30)
+          line = "particle " + std::to_string(p[id][0][slot]) + ": " + std::string(F::name) + " is not finite: " +
+                 likely_cause(F::name);
+    });
+    if (!line.empty()) break;
+  }
+  return line;
+}
+
+#define MOLTEN_INSTANTIATE(Dim, Real)                                                                \
+  template Diagnostics diagnose(const State<Dim, Real>&);                                            \
+  template Snapshot take_snapshot(const State<Dim, Real>&, const std::vector<std::string>&);         \
+  template std::int64_t count_pairs(const State<Dim, Real>&);                                        \
+  template std::string find_non_finite(const State<Dim, Real>&);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
+
+}  // namespace molten

@@ -1,0 +1,44 @@
+// What a run reports of its state: energies, momentum, extents; and snapshots for frames.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/snapshot.h"
+#include "core/state.h"
+
+namespace molten {
+
+struct Diagnostics {
+  std::int64_t particles = 0;
+  double kinetic_energy = 0, potential_energy = 0;  // J (2-D: J per m of depth); potential −m g·x
+  double heat = 0;                                  // Σ m T, kg K
+  std::array<double, 3> momentum{};                 // kg m/s
+  std::array<double, 3> lower{}, upper{};           // m; extent of the particles
+  double max_speed = 0;                             // m/s
+  double max_compression = 0;                       // largest |ρ/ρ0 − 1|
+};
+
+/// The same bits for any thread count.
+template <int Dim, class Real>
+Diagnostics diagnose(const State<Dim, Real>& s);
+
+/// All particles in id order with the named fields (empty: all that the run has). Throws Error(usage) for a name that is
+/// none of `available_fields`.
+template <int Dim, class Real>
+Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>& fields);
+
+/// Names of what a snapshot of this run can hold.
+std::vector<std::string> available_fields(const Features& features);
+
+/// Directed pairs within the support, self excluded.
+template <int Dim, class Real>
+std::int64_t count_pairs(const State<Dim, Real>& s);
+
+/// One line on the first particle whose state is not finite: its id, the field, the likely cause. Empty: all finite.
+template <int Dim, class Real>
+std::string find_non_finite(const State<Dim, Real>& s);
+
+}  // namespace molten

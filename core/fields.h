@@ -1,0 +1,147 @@
+// Every per-particle quantity, once: its shape, how it is stored, its unit and meaning. Columns, frames and checkpoints
+// are made from this list; a scene's particles hold only the columns that its features name (features.h).
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+#include "core/vec.h"
+
+namespace molten {
+
+enum class FieldShape { scalar, vector, tensor };    // tensor: symmetric
+enum class Storage { real, exact, id };              // real: the run's precision; exact: double; id: 64-bit integer
+
+template <FieldShape shape_, Storage storage_>
+struct Field {
+  static constexpr FieldShape shape = shape_;
+  static constexpr Storage storage = storage_;
+};
+
+using ScalarField = Field<FieldShape::scalar, Storage::real>;
+using VectorField = Field<FieldShape::vector, Storage::real>;
+using TensorField = Field<FieldShape::tensor, Storage::real>;
+
+#define MOLTEN_FIELD(Type, Base, tag, unit_, meaning_)         \
+  struct Type : Base {                                         \
+    static constexpr std::string_view name = #tag;             \
+    static constexpr std::string_view unit = unit_;            \
+    static constexpr std::string_view meaning = meaning_;      \
+  };                                                           \
+  inline constexpr Type tag {}
+
+using ExactVector = Field<FieldShape::vector, Storage::exact>;
+using ExactScalar = Field<FieldShape::scalar, Storage::exact>;
+using IdScalar = Field<FieldShape::scalar, Storage::id>;
+
+// What a particle is.
+MOLTEN_FIELD(Id, IdScalar, id, "1", "number given at the start, kept for life; -1: padding slot");
+MOLTEN_FIELD(Position, ExactVector, position, "m", "position");
+MOLTEN_FIELD(Velocity, VectorField, velocity, "m/s", "velocity at the time of the rates");
+MOLTEN_FIELD(Compression, ScalarField, compression, "1", "density / rest density - 1");
+MOLTEN_FIELD(Temperature, ExactScalar, temperature, "K or degC, as the scene has it", "temperature");
+
+// What an integrator carries beside it.
+MOLTEN_FIELD(HalfVelocity, VectorField, half_velocity, "m/s", "leap-frog velocity, half a step behind");
+MOLTEN_FIELD(HalfCompression, ScalarField, half_compression, "1", "leap-frog compression, half a step behind");
+MOLTEN_FIELD(PreviousCompressionRate, ScalarField, previous_compression_rate, "1/s", "compression rate one step ago");
+
+// What the passes compute for each other, from the above.
+MOLTEN_FIELD(LocalPosition, VectorField, local_position, "m", "position relative to the cluster's origin, on the grid's quantum");
+MOLTEN_FIELD(LocalTemperature, ScalarField, local_temperature, "K", "temperature less the run's reference temperature");
+MOLTEN_FIELD(PressureTerm, ScalarField, pressure_term, "Pa m6/kg2", "pressure / density^2");
+MOLTEN_FIELD(Viscosity, ScalarField, viscosity, "Pa s", "dynamic viscosity");
+MOLTEN_FIELD(Stress, TensorField, stress, "Pa m6/kg2", "viscous stress / density^2");
+MOLTEN_FIELD(Acceleration, VectorField, acceleration, "m/s2", "acceleration");
+MOLTEN_FIELD(CompressionRate, ScalarField, compression_rate, "1/s", "rate of compression");
+MOLTEN_FIELD(TemperatureRate, ScalarField, temperature_rate, "K/s", "rate of temperature");
+MOLTEN_FIELD(XsphVelocity, VectorField, xsph_velocity, "m/s", "XSPH correction of the velocity, before its factor");
+
+// Sums that a pass uses up itself; never a column.
+MOLTEN_FIELD(StrainRate, TensorField, strain_rate, "1/s", "rate of strain, grad v + its transpose");
+MOLTEN_FIELD(KernelSum, ScalarField, kernel_sum, "1", "sum of m W");
+
+#undef MOLTEN_FIELD
+
+template <class... F>
+struct FieldList {
+  static constexpr int size = sizeof...(F);
+};
+
+/// All fields that can be columns, in the order of files.
+using AllFields = FieldList<Id, Position, Velocity, Compression, Temperature, HalfVelocity, HalfCompression,
+                            PreviousCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress,
+                            Acceleration, CompressionRate, TemperatureRate, XsphVelocity>;
+
+// ---- list arithmetic at compile time --------------------------------------------------------------------------------
+
+template <class F, class List>
+struct IndexOf;
+template <class F, class... Rest>
+struct IndexOf<F, FieldList<F, Rest...>> {
+  static constexpr int value = 0;
+};
+template <class F, class G, class... Rest>
+struct IndexOf<F, FieldList<G, Rest...>> {
+  static constexpr int value = 1 + IndexOf<F, FieldList<Rest...>>::value;
+};
+
+template <class F>
+inline constexpr int field_index = IndexOf<F, AllFields>::value;
+
+template <class F, class List>
+inline constexpr bool contains = false;
+template <class F, class... G>
+inline constexpr bool contains<F, FieldList<G...>> = (std::is_same_v<F, G> || ...);
+
+template <class A, class B>
+struct Joined;
+template <class... A>
+struct Joined<FieldList<A...>, FieldList<>> {
+  using type = FieldList<A...>;
+};
+template <class... A, class F, class... B>
+struct Joined<FieldList<A...>, FieldList<F, B...>> {
+  using type = typename std::conditional_t<contains<F, FieldList<A...>>, Joined<FieldList<A...>, FieldList<B...>>,
+                                           Joined<FieldList<A..., F>, FieldList<B...>>>::type;
+};
+
+/// The fields of all lists, each once.
+template <class... Lists>
+struct UnionOf {
+  using type = FieldList<>;
+};
+template <class List, class... Lists>
+struct UnionOf<List, Lists...> {
+  using type = typename Joined<List, typename UnionOf<Lists...>::type>::type;
+};
+
+template <class A, class B>
+inline constexpr bool disjoint = true;
+template <class... A, class B>
+inline constexpr bool disjoint<FieldList<A...>, B> = !(contains<A, B> || ...);
+
+// ---- shapes ---------------------------------------------------------------------------------------------------------
+
+template <class F, int Dim>
+inline constexpr int components = F::shape == FieldShape::scalar   ? 1
+                                  : F::shape == FieldShape::vector ? Dim
+                                                                   : Dim*(Dim + 1) / 2;
+
+template <class F, class Real>
+using stored_t = std::conditional_t<F::storage == Storage::real, Real,
+                                    std::conditional_t<F::storage == Storage::exact, double, std::int64_t>>;
+
+/// A field's value for one particle (T = Real) or for a lane bundle (T = Lanes).
+template <class F, int Dim, class T>
+using value_t = std::conditional_t<F::shape == FieldShape::scalar, T,
+                                   std::conditional_t<F::shape == FieldShape::vector, Vec<Dim, T>, SymTensor<Dim, T>>>;
+
+/// Component k of a value of any shape.
+template <class T>
+T& component(T& v, int) requires(!requires { v.c; }) { return v; }
+template <class V>
+auto& component(V& v, int k) requires(requires { v.c; }) { return v.c[k]; }
+
+}  // namespace molten

@@ -1,0 +1,162 @@
+// The particle pass of a step: time integration and contact with walls.
+//
+// Leap-frog ([P] 6.4.3, physics: Monaghan): v^{n+1/2} = v^{n-1/2} + dt a^n, x += dt v^{n+1/2}; the passes need v and ρ at the
+// full step, v^{n+1} ≈ v^{n+1/2} + ½ dt a^n. v^{-1/2} = v^0 − ½ dt a^0 follows from a first half step of ½ dt.
+// Symplectic Euler: v^{n+1} = v^n + dt a^n, x += dt v^{n+1}; the density follows the positions, so its rate is extrapolated
+// to the velocity that moved them: 2 ρ'^n − ρ'^{n−1}. (With ρ'^n alone sound waves would grow as in explicit Euler.)
+#include <cmath>
+
+#include "core/particle_pass.h"
+#include "core/step.h"
+
+namespace molten {
+
+namespace {
+
+template <int Dim, class Real>
+class Integrator {
+ public:
+  explicit Integrator(State<Dim, Real>& s, double previous_dt)
+      : s_(s),
+        p_(s.particles),
+        dt_(s.clock.dt),
+        kick_(s.features.integrator == IntegratorKind::leap_frog ? (previous_dt + dt_) / 2 : dt_),
+        first_(s.clock.step == 0),
+        always_collide_(s.features.contact && longest_way() > s.parameters.spacing) {}
+
+  /// Moves one particle; returns the square of its displacement (m²).
+  double advance(std::size_t slot) const {
+    if (ids_[slot] == padding_id) return 0;
+    Motion<Dim> motion = kicked(slot);
+    const Point<Dim> before = motion.position;
+    const bool bounced = collide(slot, motion);
+    store(slot, motion, bounced);
+    advance_compression(slot);
+    if (s_.features.heat) temperature_[slot] += dt_ * temperature_rate_[slot];
+    return (motion.position - before).squaredNorm();
+  }
+
+ private:
+  /// No particle gets further from where it was sorted than this (m).
+  double longest_way() const {
+    const double fastest = std::sqrt(s_.extremes.speed2) + dt_ * std::sqrt(s_.extremes.acceleration2) +
+                           std::abs(s_.parameters.xsph) * std::sqrt(s_.extremes.xsph2);
+    return s_.neighbours.displacement() + 2 * fastest * dt_;
+  }
+
+  Motion<Dim> kicked(std::size_t slot) const {
+    Motion<Dim> m;
+    const auto& v = s_.features.integrator == IntegratorKind::leap_frog ? half_velocity_.c : velocity_.c;
+    for (int d = 0; d < Dim; ++d) {
+      m.position[d] = position_[d][slot];
+      m.velocity[d] = v[d][slot] + kick_ * acceleration_[d][slot];
+      m.rate[d] = m.velocity[d];
+      if (!s_.features.xsph) continue;
+      const double correction = s_.parameters.xsph * xsph_[d][slot];
+      m.rate[d] += correction;
+      if (s_.parameters.xsph_form == Xsph::Form::velocity) m.velocity[d] += correction;
+    }
+    return m;
+  }
+
+  bool collide(std::size_t slot, Motion<Dim>& m) const {
+    if (always_collide_ || s_.near_wall[slot / cluster_size]) return s_.contact.move(m, dt_) > 0;
+    m.position += dt_ * m.rate;
+    return false;
+  }
+
+  void store(std::size_t slot, const Motion<Dim>& m, bool bounced) const {
+    const bool leap_frog = s_.features.integrator == IntegratorKind::leap_frog;
+    for (int d = 0; d < Dim; ++d) {
+      position_[d][slot] = m.position[d];
+      if (leap_frog) half_velocity_[d][slot] = static_cast<Real>(m.velocity[d]);
+      // The wall has already had its say on a particle that bounced.
+      const double ahead = leap_frog && !bounced ? dt_ / 2 * acceleration_[d][slot] : 0;
+      velocity_[d][slot] = static_cast<Real>(m.velocity[d] + ahead);
+    }
+  }
+
+  void advance_compression(std::size_t slot) const {
+    const double rate = compression_rate_[slot];
+    if (s_.features.integrator == IntegratorKind::leap_frog) {
+      const double half = half_compression_[slot] + kick_ * rate;
+      half_compression_[slot] = static_cast<Real>(half);
+      compression_[slot] = static_cast<Real>(half + dt_ / 2 * rate);
+    } else {
+      const double before = first_ ? rate : double(previous_rate_[slot]);
+      compression_[slot] = static_cast<Real>(compression_[slot] + dt_ * (2 * rate - before));
+      previous_rate_[slot] = static_cast<Real>(rate);
+    }
+  }
+
+  State<Dim, Real>& s_;
+  Particles<Dim, Real>& p_;
+  double dt_, kick_;
+  bool first_, always_collide_;
+  const std::int64_t* ids_ = p_[id][0];
+  Column<Position, Dim, double> position_ = p_[position];
+  Column<Velocity, Dim, Real> velocity_ = p_[velocity];
+  Column<HalfVelocity, Dim, Real> half_velocity_ = p_[half_velocity];
+  Column<Acceleration, Dim, Real> acceleration_ = p_[acceleration];
+  Column<XsphVelocity, Dim, Real> xsph_ = p_[xsph_velocity];
+  Real* compression_ = p_[compression][0];
+  Real* half_compression_ = p_[half_compression][0];
+  Real* previous_rate_ = p_[previous_compression_rate][0];
+  const Real* compression_rate_ = p_[compression_rate][0];
+  double* temperature_ = p_[temperature][0];
+  const Real* temperature_rate_ = p_[temperature_rate][0];
+};
+
+/// What the pair passes read of one particle, from its state.
+template <int Dim, class Real>
+class Preparation {
+ public:
+  explicit Preparation(State<Dim, Real>& s) : s_(s) {}
+
+  void of(std::size_t slot) const {
+    s_.neighbours.localise(s_.particles, slot);
+    pressure_term_[slot] = static_cast<Real>(s_.parameters.eos.term(compression_[slot]));
+    if (s_.features.heat)
+      local_temperature_[slot] = static_cast<Real>(temperature_[slot] - s_.parameters.reference_temperature);
+  }
+
+ private:
+  State<Dim, Real>& s_;
+  Real* pressure_term_ = s_.particles[pressure_term][0];
+  const Real* compression_ = s_.particles[compression][0];
+  const double* temperature_ = s_.particles[temperature][0];
+  Real* local_temperature_ = s_.particles[local_temperature][0];
+};
+
+}  // namespace
+
+template <int Dim, class Real>
+void integrate_and_collide(State<Dim, Real>& s) {
+  const auto scope = s.timer.scope(s.features.contact ? "integrate and collide" : "integrate");
+  const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
+  const Preparation<Dim, Real> preparation(s);
+  const double way2 = reduce_slots(
+      s.particles.slots(), 0.0,
+      [&](std::size_t slot, double& largest) {
+        largest = std::max(largest, integrator.advance(slot));
+        preparation.of(slot);
+      },
+      [](double& a, double b) { a = std::max(a, b); });
+  s.neighbours.moved(std::sqrt(way2));
+}
+
+template <int Dim, class Real>
+void prepare(State<Dim, Real>& s) {
+  const Preparation<Dim, Real> preparation(s);
+  for_each_slot(s.particles.slots(), [&](std::size_t slot) { preparation.of(slot); });
+}
+
+#define MOLTEN_INSTANTIATE(Dim, Real)                      \
+  template void integrate_and_collide(State<Dim, Real>&);  \
+  template void prepare(State<Dim, Real>&);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
+
+}  // namespace molten

@@ -1,0 +1,396 @@
+#include "core/neighbours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/particle_pass.h"
+
+namespace molten {
+
+namespace {
+
+constexpr std::uint32_t clusters_a_chunk = 128;
+constexpr int segment_columns = 4;       // a segment is about this many column widths long
+constexpr double longest_cluster = 4.0;  // spacings; a sparser cluster ends early, so that local positions stay small
+constexpr double far_away = 1e5;         // spacings; where padding slots sit
+
+/// Width of a column in spacings: a cluster of 4 then is about as long as it is wide.
+template <int Dim>
+constexpr double column_width = Dim == 2 ? 2.0 : 1.5874;
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& v) { return v.capacity() * sizeof(T); }
+
+}  // namespace
+
+template <int Dim, class Real>
+Neighbours<Dim, Real>::Neighbours(const NeighbourSettings& settings, const Domain<Dim>& domain)
+    : settings_(settings), domain_(domain) {
+  for (int d = 0; d < Dim; ++d) grid_.periodic[d] = domain.periodic.along(d);
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::rebuild(Particles<Dim, Real>& particles) {
+  choose_grid(particles);
+  sort(particles);
+  find_boxes(particles);
+  list_runs();
+  displacement_ = 0;
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::relist(Particles<Dim, Real>& particles) {
+  find_boxes(particles);
+  list_runs();
+}
+
+// ---- the grid -------------------------------------------------------------------------------------------------------
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::choose_grid(const Particles<Dim, Real>& particles) {
+  struct Extent { std::array<double, Dim> lower, upper; };
+  Extent none;
+  none.lower.fill(std::numeric_limits<double>::max());
+  none.upper.fill(std::numeric_limits<double>::lowest());
+  const auto x = particles[position];
+  const auto join = [](Extent& a, const Extent& b) {
+    for (int d = 0; d < Dim; ++d) {
+      a.lower[d] = std::min(a.lower[d], b.lower[d]);
+      a.upper[d] = std::max(a.upper[d], b.upper[d]);
+    }
+  };
+  Extent extent = reduce_slots(particles.slots(), none, [&](std::size_t s, Extent& e) {
+    if (particles.is_padding(s)) return;
+    Extent own;
+    for (int d = 0; d < Dim; ++d) own.lower[d] = own.upper[d] = std::clamp(x[d][s], domain_.lower[d], domain_.upper[d]);
+    join(e, own);
+  }, join);
+  if (extent.lower[0] > extent.upper[0]) extent.lower = extent.upper = domain_.lower;  // no particles
+
+  // A quantum that divides every width, so that cells' origins lie on it: a power of two far below the spacing.
+  const double unit = std::exp2(std::floor(std::log2(settings_.spacing)) - 12);
+  const double across = std::ceil(column_width<Dim> * settings_.spacing / unit) * unit;
+  for (int d = 0; d < Dim; ++d) {
+    const double wanted = d == Grid<Dim>::along ? segment_columns * across : across;
+    if (grid_.periodic[d]) {
+      grid_.lower[d] = domain_.periodic.lower[d];
+      grid_.cells[d] = std::max(1, static_cast<std::int32_t>(domain_.periodic.period[d] / wanted));
+      grid_.width[d] = domain_.periodic.period[d] / grid_.cells[d];
+    } else {
+      grid_.width[d] = wanted;
+      grid_.lower[d] = std::floor(extent.lower[d] / wanted) * wanted;
+      grid_.cells[d] = static_cast<std::int32_t>((extent.upper[d] - grid_.lower[d]) / wanted) + 1;
+    }
+  }
+  // A few particles thrown far must not make the table of columns larger than the particles: wider columns then.
+  const double most_columns = 4096 + 4.0 * static_cast<double>(particles.count());
+  while (static_cast<double>(grid_.columns()) > most_columns) {
+    bool widened = false;
+    for (int d = 0; d < Grid<Dim>::along; ++d) {
+      if (grid_.cells[d] <= 1) continue;
+      grid_.cells[d] = (grid_.cells[d] + 1) / 2;
+      grid_.width[d] = grid_.periodic[d] ? domain_.periodic.period[d] / grid_.cells[d] : 2 * grid_.width[d];
+      widened = true;
+    }
+    if (!widened) break;
+  }
+  choose_quantum();
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::choose_quantum() {
+  // The largest coordinate that a pair within the support can have relative to either origin.
+  const double reach = settings_.support_radius + 2 * settings_.skin + longest_cluster * settings_.spacing;
+  double largest = 0;
+  for (int d = 0; d < Dim; ++d) largest = std::max(largest, 0.5 * grid_.width[d] + reach);
+  const int digits = std::numeric_limits<Real>::digits;
+  // Not finer than double positions resolve.
+  grid_.quantum = std::exp2(std::ceil(std::log2(largest)) - std::min(digits, 44));
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::localise(Particles<Dim, Real>& particles, std::size_t slot) const {
+  const auto local = particles[local_position];
+  const auto x = particles[position];
+  const bool padding = particles.is_padding(slot);
+  const Cell<Dim>& c = cells_[slot / cluster_size];
+  for (int d = 0; d < Dim; ++d)
+    local[d][slot] = static_cast<Real>(padding ? far_away * settings_.spacing
+                                               : grid_.on_quantum(x[d][slot] - grid_.origin(d, c[d])));
+}
+
+// ---- order ----------------------------------------------------------------------------------------------------------
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::sort(Particles<Dim, Real>& particles) {
+  const auto x = particles[position];
+  for_each_slot(particles.slots(), [&](std::size_t s) {
+    for (int d = 0; d < Dim; ++d) x[d][s] = domain_.periodic.wrapped(d, x[d][s]);
+  });
+  sort_columns(particles);
+  std::size_t count = 0;
+  const std::vector<std::int32_t> order = cluster_order(particles, count);
+  dropped_ += particles.count() - count;
+  particles.permute(order, count);
+  for_each_slot(particles.slots(), [&](std::size_t s) { localise(particles, s); });
+}
+
+/// Fills entries_ column by column, each sorted along the column; ties by id, so that the order depends on state alone.
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::sort_columns(const Particles<Dim, Real>& particles) {
+  const std::size_t slots = particles.slots(), columns = grid_.columns();
+  const auto x = particles[position];
+  const auto ids = particles[id][0];
+  std::vector<std::uint32_t> column_of(slots), next(columns + 1, 0);
+  constexpr std::uint32_t nowhere = ~0u;
+  for_each_slot(slots, [&](std::size_t s) {
+    Cell<Dim> c{};
+    bool inside = ids[s] != padding_id;
+    for (int d = 0; d < Dim && inside; ++d) {
+      inside = grid_.periodic[d] || (x[d][s] >= domain_.lower[d] && x[d][s] <= domain_.upper[d]);
+      if (d < Grid<Dim>::along) c[d] = grid_.index(d, x[d][s]);
+    }
+    column_of[s] = inside ? static_cast<std::uint32_t>(grid_.column(c)) : nowhere;
+  });
+  for (std::size_t s = 0; s < slots; ++s)
+    if (column_of[s] != nowhere) ++next[column_of[s] + 1];
+  for (std::size_t c = 0; c < columns; ++c) next[c + 1] += next[c];
+  entry_begin_.assign(next.begin(), next.end());
+  entries_.resize(next[columns]);
+  for (std::size_t s = 0; s < slots; ++s)
+    if (column_of[s] != nowhere)
+      entries_[next[column_of[s]]++] = {static_cast<float>(x[Dim - 1][s] - grid_.lower[Dim - 1]),
+                                        static_cast<std::int32_t>(s)};
+  const auto before = [ids](const Entry& a, const Entry& b) {
+    return a.along != b.along ? a.along < b.along : ids[a.slot] < ids[b.slot];
+  };
+  for_each_piece((columns + 63) / 64, [&](std::size_t group) {
+    for (std::size_t c = group * 64; c < std::min(columns, (group + 1) * 64); ++c)
+      std::sort(entries_.begin() + entry_begin_[c], entries_.begin() + entry_begin_[c + 1], before);
+  });
+}
+
+/// Cuts the sorted columns into clusters; gives cells_ and column_begin_, and for every new slot its old one.
+template <int Dim, class Real>
+std::vector<std::int32_t> Neighbours<Dim, Real>::cluster_order(const Particles<Dim, Real>&, std::size_t& count) {
+  const std::size_t columns = grid_.columns();
+  const float longest = static_cast<float>(longest_cluster * settings_.spacing);
+  const auto cluster_end = [&](std::uint32_t begin, std::uint32_t end) {
+    std::uint32_t k = begin + 1;
+    while (k < end && k < begin + cluster_size && entries_[k].along - entries_[begin].along <= longest) ++k;
+    return k;
+  };
+  column_begin_.assign(columns + 1, 0);
+  for_each_piece((columns + 63) / 64, [&](std::size_t group) {
+    for (std::size_t c = group * 64; c < std::min(columns, (group + 1) * 64); ++c)
+      for (std::uint32_t k = entry_begin_[c]; k < entry_begin_[c + 1]; k = cluster_end(k, entry_begin_[c + 1]))
+        ++column_begin_[c + 1];
+  });
+  for (std::size_t c = 0; c < columns; ++c) column_begin_[c + 1] += column_begin_[c];
+  const std::size_t clusters = column_begin_[columns];
+  cells_.resize(clusters);
+  std::vector<std::int32_t> order(clusters * cluster_size, -1);
+  for_each_piece((columns + 63) / 64, [&](std::size_t group) {
+    for (std::size_t c = group * 64; c < std::min(columns, (group + 1) * 64); ++c) {
+      Cell<Dim> cell{};
+      for (std::size_t d = 0, rest = c; d < Grid<Dim>::along; ++d) {
+        cell[d] = static_cast<std::int32_t>(rest % grid_.cells[d]);
+        rest /= grid_.cells[d];
+      }
+      std::uint32_t cluster = column_begin_[c];
+      for (std::uint32_t k = entry_begin_[c]; k < entry_begin_[c + 1]; ++cluster) {
+        const std::uint32_t end = cluster_end(k, entry_begin_[c + 1]);
+        cell[Dim - 1] = grid_.index(Dim - 1, grid_.lower[Dim - 1] + entries_[k].along);
+        cells_[cluster] = cell;
+        for (int i = 0; k < end; ++k, ++i) order[cluster * cluster_size + i] = entries_[k].slot;
+      }
+    }
+  });
+  count = entries_.size();
+  return order;
+}
+
+// ---- the list -------------------------------------------------------------------------------------------------------
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::find_boxes(const Particles<Dim, Real>& particles) {
+  for (int d = 0; d < Dim; ++d) boxes_.lower[d].resize(clusters()), boxes_.upper[d].resize(clusters());
+  const auto local = particles[local_position];
+  for_each_slot(clusters(), [&](std::size_t c) {
+    for (int d = 0; d < Dim; ++d) {
+      float lower = std::numeric_limits<float>::max(), upper = std::numeric_limits<float>::lowest();
+      for (std::size_t s = c * cluster_size; s < (c + 1) * cluster_size; ++s) {
+        if (particles.is_padding(s)) continue;
+        lower = std::min(lower, static_cast<float>(local[d][s]));
+        upper = std::max(upper, static_cast<float>(local[d][s]));
+      }
+      boxes_.lower[d][c] = lower;
+      boxes_.upper[d][c] = upper;
+    }
+  });
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::list_runs() {
+  const double range = settings_.support_radius + settings_.skin;
+  // Columns within reach across the axis; when relisting, particles may have left their column by half a skin each.
+  std::vector<Cell<Dim>> reach;
+  std::array<int, 3> far{0, 0, 0};
+  for (int d = 0; d < Grid<Dim>::along; ++d)
+    far[d] = static_cast<int>(std::ceil((range + settings_.skin) / grid_.width[d]));
+  for (int b = -far[1]; b <= far[1]; ++b)
+    for (int a = -far[0]; a <= far[0]; ++a) {
+      Cell<Dim> offset{};
+      offset[0] = a;
+      if constexpr (Dim == 3) offset[1] = b;
+      reach.push_back(offset);
+    }
+  const std::size_t count = (clusters() + clusters_a_chunk - 1) / clusters_a_chunk;
+  chunks_.resize(count);
+  for_each_piece(count, [&](std::size_t k) {
+    ClusterChunk& chunk = chunks_[k];
+    chunk.begin = static_cast<std::uint32_t>(k * clusters_a_chunk);
+    chunk.end = static_cast<std::uint32_t>(std::min<std::size_t>(clusters(), (k + 1) * clusters_a_chunk));
+    list_chunk(chunk, reach);
+  });
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::list_chunk(ClusterChunk& chunk, std::span<const Cell<Dim>> reach) const {
+  chunk.runs.clear();
+  chunk.run_begin.clear();
+  for (std::uint32_t c = chunk.begin; c < chunk.end; ++c) {
+    chunk.run_begin.push_back(static_cast<std::uint32_t>(chunk.runs.size()));
+    for (const Cell<Dim>& offset : reach) append_runs(chunk, c, offset);
+  }
+  chunk.run_begin.push_back(static_cast<std::uint32_t>(chunk.runs.size()));
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::append_runs(ClusterChunk& chunk, std::uint32_t cluster, const Cell<Dim>& offset) const {
+  Cell<Dim> column{};
+  for (int d = 0; d < Grid<Dim>::along; ++d) {
+    column[d] = cells_[cluster][d] + offset[d];
+    if (grid_.periodic[d]) column[d] = ((column[d] % grid_.cells[d]) + grid_.cells[d]) % grid_.cells[d];
+    else if (column[d] < 0 || column[d] >= grid_.cells[d]) return;
+  }
+  const std::size_t number = grid_.column(column);
+  if (!grid_.periodic[Dim - 1]) return append_image(chunk, cluster, number, offset);
+  const double range = settings_.support_radius + 2 * settings_.skin;
+  const int images = 1 + static_cast<int>(range / (grid_.cells[Dim - 1] * grid_.width[Dim - 1]));
+  for (int image = -images; image <= images; ++image) {
+    Cell<Dim> o = offset;
+    o[Dim - 1] = image * grid_.cells[Dim - 1];
+    append_image(chunk, cluster, number, o);
+  }
+}
+
+/// The clusters of one column (moved by offset[along] segments) whose boxes come within range of the cluster's.
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::append_image(ClusterChunk& chunk, std::uint32_t cluster, std::size_t column,
+                                         Cell<Dim> offset) const {
+  constexpr int along = Dim - 1;
+  // float boxes: a little slack so that rounding never loses a pair
+  const float range = static_cast<float>((settings_.support_radius + settings_.skin) * (1 + 1e-6) + 1e-5 * settings_.spacing);
+  const std::int32_t segment = cells_[cluster][along];
+  const auto gap = [&](int d, std::uint32_t other, float shift) {
+    return std::max(0.f, std::max(boxes_.lower[d][other] + shift - boxes_.upper[d][cluster],
+                                  boxes_.lower[d][cluster] - boxes_.upper[d][other] - shift));
+  };
+  const auto along_shift = [&](std::uint32_t other) {
+    return static_cast<float>((cells_[other][along] + offset[along] - segment) * grid_.width[along]);
+  };
+  std::array<float, Dim> across{};
+  for (int d = 0; d < along; ++d) across[d] = static_cast<float>(offset[d] * grid_.width[d]);
+
+  const std::uint32_t end = column_begin_[column + 1];
+  // Boxes follow one another along the column (up to half a skin each after a restart), so the first in reach is found
+  // by bisection.
+  std::uint32_t first = column_begin_[column];
+  for (std::uint32_t count = end - first; count > 0;) {
+    const std::uint32_t half = count / 2;
+    const float top = boxes_.upper[along][first + half] + along_shift(first + half);
+    if (top < boxes_.lower[along][cluster] - range - static_cast<float>(settings_.skin)) first += half + 1, count -= half + 1;
+    else count = half;
+  }
+  ClusterRun* run = nullptr;
+  for (std::uint32_t other = first; other < end; ++other) {
+    const float shift = along_shift(other);
+    if (boxes_.lower[along][other] + shift > boxes_.upper[along][cluster] + range + static_cast<float>(settings_.skin)) break;
+    float distance2 = gap(along, other, shift) * gap(along, other, shift);
+    for (int d = 0; d < along; ++d) distance2 += gap(d, other, across[d]) * gap(d, other, across[d]);
+    if (distance2 > range * range) continue;
+    const auto segments = static_cast<std::int8_t>(cells_[other][along] + offset[along] - segment);
+    if (run && run->first + run->count == other && run->offset[along] == segments && run->count < 255) {
+      ++run->count;
+      continue;
+    }
+    ClusterRun next{other, 1, {}};
+    for (int d = 0; d < along; ++d) next.offset[d] = static_cast<std::int8_t>(offset[d]);
+    next.offset[along] = segments;
+    chunk.runs.push_back(next);
+    run = &chunk.runs.back();
+  }
+}
+
+template <int Dim, class Real>
+std::size_t Neighbours<Dim, Real>::bytes() const {
+  std::size_t sum = bytes_of(cells_) + bytes_of(column_begin_) + bytes_of(entries_) + bytes_of(entry_begin_) + bytes_of(chunks_);
+  for (int d = 0; d < Dim; ++d) sum += bytes_of(boxes_.lower[d]) + bytes_of(boxes_.upper[d]);
+  for (const ClusterChunk& c : chunks_) sum += bytes_of(c.runs) + bytes_of(c.run_begin);
+  return sum;
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::archive(Archive& a) {
+  a.value("neighbours/displacement", displacement_);
+  auto dropped = static_cast<std::int64_t>(dropped_);
+  a.value("neighbours/dropped", dropped);
+  dropped_ = static_cast<std::size_t>(dropped);
+  a.value("grid/quantum", grid_.quantum);
+  a.array("grid/lower", NumberType::f64, grid_.lower.data(), Dim);
+  a.array("grid/width", NumberType::f64, grid_.width.data(), Dim);
+  a.array("grid/cells", NumberType::i32, grid_.cells.data(), Dim);
+  a.vector("grid/column_begin", column_begin_);
+  std::vector<std::int32_t> flat;
+  if (!a.loading())
+    for (const Cell<Dim>& c : cells_) flat.insert(flat.end(), c.begin(), c.end());
+  a.vector("grid/cluster_cells", flat);
+  if (a.loading()) {
+    cells_.resize(flat.size() / Dim);
+    for (std::size_t k = 0; k < flat.size(); ++k) cells_[k / Dim][k % Dim] = flat[k];
+  }
+}
+
+template <int Dim, class Real>
+std::vector<std::pair<std::uint32_t, std::uint32_t>> naive_pairs(const Particles<Dim, Real>& particles,
+                                                                const Periodicity<Dim>& periodic,
+                                                                double support_radius) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  const auto x = particles[position];
+  for (std::uint32_t i = 0; i < particles.slots(); ++i)
+    for (std::uint32_t j = 0; j < particles.slots(); ++j) {
+      if (i == j || particles.is_padding(i) || particles.is_padding(j)) continue;
+      double r2 = 0;
+      for (int d = 0; d < Dim; ++d) {
+        double dx = x[d][i] - x[d][j];
+        if (periodic.along(d)) dx -= periodic.period[d] * std::round(dx / periodic.period[d]);
+        r2 += dx * dx;
+      }
+      if (r2 < support_radius * support_radius) pairs.emplace_back(i, j);
+    }
+  return pairs;
+}
+
+#define MOLTEN_INSTANTIATE(Dim, Real)                                                                      \
+  template class Neighbours<Dim, Real>;                                                                    \
+  template std::vector<std::pair<std::uint32_t, std::uint32_t>> naive_pairs(const Particles<Dim, Real>&,   \
+                                                                            const Periodicity<Dim>&, double);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
+
+}  // namespace molten

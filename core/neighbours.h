@@ -1,0 +1,111 @@
+// Order and neighbours of the particles: sorts them into clusters along the grid's columns, and lists for every cluster
+// the runs of clusters within the support radius and a skin. Good until a particle has moved half a skin.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/particles.h"
+
+namespace molten {
+
+/// Consecutive clusters that share an origin. `offset`: cells from the listing cluster's origin to theirs, images of
+/// periodic axes counted on, so a periodic shift needs nothing more.
+struct ClusterRun {
+  std::uint32_t first;
+  std::uint8_t count;
+  std::array<std::int8_t, 3> offset;
+};
+
+/// Clusters that are handled together by one thread: the fixed block of all pair work.
+struct ClusterChunk {
+  std::uint32_t begin = 0, end = 0;      // clusters
+  std::vector<ClusterRun> runs;          // of all its clusters, in order
+  std::vector<std::uint32_t> run_begin;  // end − begin + 1 positions in runs
+};
+
+struct NeighbourSettings {
+  double spacing = 0;         // m
+  double support_radius = 0;  // m
+  double skin = 0;            // m
+};
+
+template <int Dim>
+struct Domain {
+  std::array<double, Dim> lower{}, upper{};  // m; particles outside are dropped at the next sort
+  Periodicity<Dim> periodic;
+};
+
+template <int Dim, class Real>
+class Neighbours {
+ public:
+  Neighbours(const NeighbourSettings& settings, const Domain<Dim>& domain);
+
+  /// Sorts the particles, drops those outside the domain, and lists the clusters' neighbours.
+  void rebuild(Particles<Dim, Real>& particles);
+
+  /// True when a particle may have moved half a skin since the last build.
+  bool is_due() const { return 2 * displacement_ > settings_.skin; }
+  /// Adds the largest displacement of one step (m). The sum bounds each particle's way since the build.
+  void moved(double displacement) { displacement_ += displacement; }
+  double displacement() const { return displacement_; }
+
+  const Grid<Dim>& grid() const { return grid_; }
+  const NeighbourSettings& settings() const { return settings_; }
+  std::span<const ClusterChunk> chunks() const { return chunks_; }
+  const Cell<Dim>& cell(std::size_t cluster) const { return cells_[cluster]; }
+  std::size_t clusters() const { return cells_.size(); }
+  std::size_t dropped() const { return dropped_; }  // particles that have left the domain so far
+  std::size_t bytes() const;
+
+  /// Sets a slot's local position from its position; padding goes far away.
+  void localise(Particles<Dim, Real>& particles, std::size_t slot) const;
+
+  void archive(Archive& a);
+  /// After loading: lists the neighbours again for the restored order. The list may differ from the stored run's in pairs
+  /// outside the support only, so sums keep their bits.
+  void relist(Particles<Dim, Real>& particles);
+
+ private:
+  struct Boxes {
+    std::vector<float> lower[Dim], upper[Dim];  // of the clusters, relative to their origins (m)
+  };
+  void choose_grid(const Particles<Dim, Real>& particles);
+  void choose_quantum();
+  void sort(Particles<Dim, Real>& particles);
+  void sort_columns(const Particles<Dim, Real>& particles);
+  std::vector<std::int32_t> cluster_order(const Particles<Dim, Real>& particles, std::size_t& count);
+  void find_boxes(const Particles<Dim, Real>& particles);
+  void list_runs();
+  void list_chunk(ClusterChunk& chunk, std::span<const Cell<Dim>> reach) const;
+  void append_runs(ClusterChunk& chunk, std::uint32_t cluster, const Cell<Dim>& column_offset) const;
+  void append_image(ClusterChunk& chunk, std::uint32_t cluster, std::size_t column, Cell<Dim> offset) const;
+
+  NeighbourSettings settings_;
+  Domain<Dim> domain_;
+  Grid<Dim> grid_;
+  double displacement_ = 0;
+  std::size_t dropped_ = 0;
+  std::vector<Cell<Dim>> cells_;             // of the clusters
+  std::vector<std::uint32_t> column_begin_;  // first cluster of each column, and the end
+  Boxes boxes_;
+  std::vector<ClusterChunk> chunks_;
+
+  struct Entry {
+    float along;          // position along the column, m from the grid's lower end
+    std::int32_t slot;    // old slot
+  };
+  std::vector<Entry> entries_;                // sort scratch
+  std::vector<std::uint32_t> entry_begin_;    // by column
+};
+
+/// All pairs within the support by brute force: the twin that tests hold the list against. Slots, both directions,
+/// self excluded.
+template <int Dim, class Real>
+std::vector<std::pair<std::uint32_t, std::uint32_t>> naive_pairs(const Particles<Dim, Real>& particles,
+                                                                const Periodicity<Dim>& periodic,
+                                                                double support_radius);
+
+}  // namespace molten

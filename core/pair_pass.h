@@ -1,0 +1,240 @@
+// The only neighbour loop. A physics term is a small functor that names the fields it reads and the fields it sums, and
+// adds its contribution for one pair; terms are fused at compile time into one pass over the cluster runs. Sums are
+// gathered onto i only: no races, the same bits for any number of threads.
+//
+//   struct Example {
+//     using Reads = FieldList<Velocity>;
+//     using Sums = FieldList<CompressionRate>;
+//     bool on = true;                                        // the same for the whole pass; off adds nothing
+//     template <class Pair, class I, class J, class Out>
+//     void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
+//       out.gradW(compression_rate, dot(i[velocity] - j[velocity], ij.x));   // adds m_j (v_ij · x_ij) W'/r
+//     }
+//   };
+//
+// A contribution is always a multiple of m_j W or of m_j ∇W = m_j (W'/r) x_ij, which vanish beyond the support, so lanes
+// without a pair add exactly zero.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <tuple>
+
+#include "core/kernel.h"
+#include "core/neighbours.h"
+#include "core/particle_pass.h"
+#include "core/particles.h"
+#include "core/simd.h"
+
+namespace molten {
+
+/// Pair quantities of N lanes.
+template <int Dim, class L>
+struct Pair {
+  Vec<Dim, L> x;  // x_i − x_j, m
+  L r2;           // |x|², m²
+  L r;            // |x|, m
+};
+
+/// One value for each field of a list.
+template <class F, int Dim, class T>
+struct Slot {
+  value_t<F, Dim, T> value;
+};
+template <class List, int Dim, class T>
+struct Values;
+template <class... F, int Dim, class T>
+struct Values<FieldList<F...>, Dim, T> : Slot<F, Dim, T>... {
+  template <class G>
+  value_t<G, Dim, T>& operator[](G) { return Slot<G, Dim, T>::value; }
+  template <class G>
+  const value_t<G, Dim, T>& operator[](G) const { return Slot<G, Dim, T>::value; }
+};
+
+namespace pair_pass_detail {
+
+/// The columns that a pass reads, fetched once.
+template <class List, int Dim, class Real>
+struct Columns;
+template <class... F, int Dim, class Real>
+struct Columns<FieldList<F...>, Dim, Real> : Column<F, Dim, stored_t<F, Real>>... {
+  explicit Columns(const Particles<Dim, Real>& p) : Column<F, Dim, stored_t<F, Real>>(p[F{}])... {}
+  template <class G>
+  const Column<G, Dim, stored_t<G, Real>>& operator[](G) const { return *this; }
+};
+
+/// The values of J neighbours from `slot` on, loaded when a term asks for them.
+template <int J, class L, int Dim, class Real, class Cols>
+struct Neighbour {
+  const Cols& columns;
+  std::size_t slot;
+
+  template <class F>
+  value_t<F, Dim, L> operator[](F) const {
+    static_assert(F::storage == Storage::real, "pair arithmetic reads columns of the run's precision");
+    value_t<F, Dim, L> v;
+    const auto& column = columns[F{}];
+    unrolled<components<F, Dim>>([&](auto k) { component(v, k) = load_j<J, Real, sizeof(L) / sizeof(Real)>(column[k] + slot); });
+    return v;
+  }
+};
+
+/// What the terms add for one pair, sorted by the factor that it will be multiplied with.
+template <class Sums, int Dim, class L>
+struct Contributions {
+  Values<Sums, Dim, L> gradient, weight;  // × m W'/r, × m W
+  Values<Sums, Dim, L> radial;            // × m ∇W = m W'/r x; vectors only, component 0
+
+  /// Adds m_j W'/r · v
+  template <class F>
+  void gradW(F, const value_t<F, Dim, L>& v) { gradient[F{}] += v; }
+  /// Adds m_j ∇W · s to a vector.
+  template <class F>
+  void along(F, const L& s) { radial[F{}][0] += s; }
+  /// Adds m_j W · v
+  template <class F>
+  void W(F, const value_t<F, Dim, L>& v) { weight[F{}] += v; }
+};
+
+template <class... F, int Dim, class L>
+void clear(Values<FieldList<F...>, Dim, L>& values) {
+  (unrolled<components<F, Dim>>([&](auto k) { component(values[F{}], k) = L(0); }), ...);
+}
+
+template <class... F, int Dim, class L>
+void accumulate(Values<FieldList<F...>, Dim, L>& sums, const Contributions<FieldList<F...>, Dim, L>& c,
+                const Pair<Dim, L>& ij, const ShapeAndSlope<L>& kernel) {
+  const auto add = [&]<class G>(G) {
+    unrolled<components<G, Dim>>([&](auto k) {
+      L g = component(c.gradient[G{}], k);
+      if constexpr (G::shape == FieldShape::vector) g = g + c.radial[G{}][0] * ij.x[k];
+      component(sums[G{}], k) += kernel.slope * g + kernel.w * component(c.weight[G{}], k);
+    });
+  };
+  (add(F{}), ...);
+}
+
+}  // namespace pair_pass_detail
+
+/// A named pass: which lanes it runs on and what it fuses.
+///   The callable is called once for each particle slot (padding too) with its sums as Values<Sums, Dim, Real>.
+///   finish.for_chunk(number) gives the callable for one chunk, which may hold that chunk's share of a reduction.
+template <int N, int Dim, class Real, class KernelType, class Finish, class... Terms>
+class PairPass {
+  using L = Lanes<Real, N>;
+  using Reads = typename UnionOf<FieldList<LocalPosition>, typename Terms::Reads...>::type;
+  using Sums = typename UnionOf<typename Terms::Sums...>::type;
+  static_assert(disjoint<Reads, Sums>, "a term reads what a term of the same pass sums: put them in different passes");
+  static constexpr int I = N < cluster_size ? N : cluster_size, J = N / I;
+  using Columns = pair_pass_detail::Columns<Reads, Dim, Real>;
+
+ public:
+  PairPass(const Neighbours<Dim, Real>& neighbours, const Particles<Dim, Real>& particles, const KernelType& kernel,
+           const Finish& finish, const Terms&... terms)
+      : neighbours_(neighbours), kernel_(kernel), finish_(finish), terms_(terms...), columns_(particles) {}
+
+  void run() const {
+    const auto chunks = neighbours_.chunks();
+    for_each_piece(chunks.size(), [&](std::size_t k) { run_chunk(chunks[k], k); });
+  }
+
+ private:
+  void run_chunk(const ClusterChunk& chunk, std::size_t number) const {
+    auto finish = finish_.for_chunk(number);
+    for (std::uint32_t c = chunk.begin; c < chunk.end; ++c) {
+      const ClusterRun* begin = chunk.runs.data() + chunk.run_begin[c - chunk.begin];
+      const ClusterRun* end = chunk.runs.data() + chunk.run_begin[c - chunk.begin + 1];
+      for (int i = 0; i < cluster_size; i += I) sum_up(std::size_t{c} * cluster_size + i, begin, end, finish);
+    }
+  }
+
+  /// The sums of I particles from `slot` on.
+  template <class ChunkFinish>
+  __attribute__((flatten, noinline)) void sum_up(std::size_t slot, const ClusterRun* begin, const ClusterRun* end, ChunkFinish& finish) const {
+    const auto i = load_own(slot, Reads{});
+    Values<Sums, Dim, L> sums;
+    pair_pass_detail::clear(sums);
+    for (const ClusterRun* run = begin; run != end; ++run) {
+      Vec<Dim, L> x = i[local_position];
+      unrolled<Dim>([&](auto d) { x[d] = x[d] - L(static_cast<Real>(neighbours_.grid().shift(d, run->offset[d]))); });
+      const std::size_t last = (std::size_t{run->first} + run->count) * cluster_size;
+      for (std::size_t j = std::size_t{run->first} * cluster_size; j < last; j += J) add_pairs(i, x, j, sums);
+    }
+    hand_over(slot, sums, finish, Sums{});
+  }
+
+  template <class Own>
+  __attribute__((always_inline)) void add_pairs(const Own& i, const Vec<Dim, L>& x, std::size_t slot,
+                                                Values<Sums, Dim, L>& sums) const {
+    const pair_pass_detail::Neighbour<J, L, Dim, Real, Columns> j{columns_, slot};
+    Pair<Dim, L> ij;
+    ij.x = x - j[local_position];
+    ij.r2 = dot(ij.x, ij.x);
+    const L safe = max(ij.r2, L(std::numeric_limits<Real>::min() * Real(1e8)));  // a particle with itself: r = 0
+    ij.r = safe * reciprocal_sqrt(safe);
+    const ShapeAndSlope<L> kernel = kernel_(ij.r);
+    pair_pass_detail::Contributions<Sums, Dim, L> out;
+    pair_pass_detail::clear(out.gradient);
+    pair_pass_detail::clear(out.weight);
+    pair_pass_detail::clear(out.radial);
+    std::apply([&](const Terms&... term) { (add_term(term, ij, i, j, out), ...); }, terms_);
+    pair_pass_detail::accumulate(sums, out, ij, kernel);
+  }
+
+  template <class Term, class Own, class Other, class Out>
+  __attribute__((always_inline)) static void add_term(const Term& term, const Pair<Dim, L>& ij, const Own& i,
+                                                      const Other& j, Out& out) {
+    if (term.on) term(ij, i, j, out);
+  }
+
+  template <class... F>
+  Values<Reads, Dim, L> load_own(std::size_t slot, FieldList<F...>) const {
+    Values<Reads, Dim, L> v;
+    const auto load = [&]<class G>(G) {
+      unrolled<components<G, Dim>>([&](auto k) {
+        const auto* column = columns_[G{}][k];
+        component(v[G{}], k) = column ? load_i<I, Real, N>(column + slot) : L(0);
+      });
+    };
+    (load(F{}), ...);
+    return v;
+  }
+
+  template <class ChunkFinish, class... F>
+  static void hand_over(std::size_t slot, const Values<Sums, Dim, L>& sums, ChunkFinish& finish, FieldList<F...>) {
+    Values<Sums, Dim, Real> of[I];
+    const auto split = [&]<class G>(G) {
+      unrolled<components<G, Dim>>([&](auto k) {
+        Real each[I];
+        sum_j<I, Real, N>(component(sums[G{}], k), each);
+        for (int n = 0; n < I; ++n) component(of[n][G{}], k) = each[n];
+      });
+    };
+    (split(F{}), ...);
+    for (int n = 0; n < I; ++n) finish(slot + n, of[n]);
+  }
+
+  const Neighbours<Dim, Real>& neighbours_;
+  KernelType kernel_;
+  const Finish& finish_;
+  std::tuple<Terms...> terms_;
+  Columns columns_;
+};
+
+/// Runs fused terms over all pairs on N lanes.
+template <int N, int Dim, class Real, class KernelType, class Finish, class... Terms>
+void pair_pass(const Neighbours<Dim, Real>& neighbours, const Particles<Dim, Real>& particles, const KernelType& kernel,
+               const Finish& finish, const Terms&... terms) {
+  PairPass<N, Dim, Real, KernelType, Finish, Terms...>(neighbours, particles, kernel, finish, terms...).run();
+}
+
+/// A finish without reductions: f(slot, sums).
+template <class F>
+struct PlainFinish {
+  F f;
+  const F& for_chunk(std::size_t) const { return f; }
+};
+template <class F>
+PlainFinish(F) -> PlainFinish<F>;
+
+}  // namespace molten

@@ -1,0 +1,88 @@
+#include "core/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace molten {
+
+namespace {
+
+struct Extent {
+  std::array<double, 3> lower{1e300, 1e300, 1e300}, upper{-1e300, -1e300, -1e300};
+};
+
+Extent extent_of(const Start& start) {
+  Extent e;
+  for (const auto& x : start.position)
+    for (int d = 0; d < 3; ++d) e.lower[d] = std::min(e.lower[d], x[d]), e.upper[d] = std::max(e.upper[d], x[d]);
+  return e;
+}
+
+/// Ten times the speed that the fluid reaches by falling its own height, or starts with.
+double default_sound_speed(const Scene& scene, const Start& start, const Extent& extent) {
+  double fall = 0, fastest2 = 0;  // g · height, m²/s²
+  for (int d = 0; d < scene.dimensions; ++d)
+    fall += std::abs(scene.gravity[d]) * (extent.upper[d] - extent.lower[d] + start.spacing);
+  for (const auto& v : start.velocity) fastest2 = std::max(fastest2, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  return 10 * std::sqrt(2 * fall + fastest2 + 1e-12);
+}
+
+/// Ten extents of the fluid and the walls' reach beyond: far enough that only what has escaped is dropped.
+template <int Dim>
+Domain<Dim> domain_of(const Scene& scene, const Extent& extent) {
+  Domain<Dim> domain;
+  double size = 0;
+  for (int d = 0; d < Dim; ++d) size = std::max(size, extent.upper[d] - extent.lower[d]);
+  for (int d = 0; d < Dim; ++d) {
+    domain.lower[d] = scene.domain ? scene.domain->min[d] : extent.lower[d] - 100 * size;
+    domain.upper[d] = scene.domain ? scene.domain->max[d] : extent.upper[d] + 100 * size;
+    if (!scene.periodic[d]) continue;
+    domain.periodic.lower[d] = domain.lower[d];
+    domain.periodic.period[d] = domain.upper[d] - domain.lower[d];
+  }
+  return domain;
+}
+
+}  // namespace
+
+template <int Dim>
+Parameters<Dim> parameters_of(const Scene& scene, const Start& start) {
+  const Extent extent = extent_of(start);
+  const Numerics& n = scene.numerics;
+  Parameters<Dim> p;
+  p.spacing = start.spacing;
+  p.smoothing_length = n.smoothing_ratio * start.spacing;
+  p.support_radius = kernel_reach(n.kernel) * p.smoothing_length;
+  p.skin = n.skin * start.spacing;
+  p.particle_mass = scene.fluid.density * start.measure / static_cast<double>(start.position.size());
+  for (int d = 0; d < Dim; ++d) p.gravity[d] = scene.gravity[d];
+  p.kernel = n.kernel;
+  p.eos = {n.state_equation, scene.fluid.density, n.sound_speed.value_or(default_sound_speed(scene, start, extent)), n.gamma};
+  const Rheology& r = scene.fluid.rheology;
+  p.viscosity = r.viscosity;
+  if (r.model == Rheology::Model::smd) p.smd = Smd(r.flow_index, r.yield_stress, r.consistency, r.jump_number);
+  if (scene.fluid.heat) {
+    p.diffusivity = scene.fluid.heat->diffusivity;
+    if (scene.fluid.heat->melting_range) {
+      p.smd.melting_low = (*scene.fluid.heat->melting_range)[0];
+      p.smd.melting_high = (*scene.fluid.heat->melting_range)[1];
+    }
+    const auto [low, high] = std::minmax_element(start.temperature.begin(), start.temperature.end());
+    p.reference_temperature = (*low + *high) / 2;
+  }
+  p.artificial_viscosity = n.artificial_viscosity;
+  if (n.xsph) p.xsph = n.xsph->epsilon, p.xsph_form = n.xsph->form;
+  p.courant_sound = n.courant_sound;
+  p.courant_viscous = n.courant_viscous;
+  p.courant_force = n.courant_force;
+  p.courant_conduction = n.courant_conduction;
+  p.fixed_dt = n.fixed_dt;
+  p.sort_each_step = n.resort == Resort::each_step;
+  p.domain = domain_of<Dim>(scene, extent);
+  return p;
+}
+
+template Parameters<2> parameters_of<2>(const Scene&, const Start&);
+template Parameters<3> parameters_of<3>(const Scene&, const Start&);
+
+}  // namespace molten

@@ -1,0 +1,43 @@
+// The only per-particle loops. Reductions go through fixed blocks, so they give the same bits for any thread count.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace molten {
+
+inline constexpr std::size_t block_size = 1024;  // slots; fixed, never the thread count's
+
+/// f(slot) for all slots, in parallel.
+template <class F>
+void for_each_slot(std::size_t slots, F&& f) {
+#pragma omp parallel for schedule(static)
+  for (std::size_t s = 0; s < slots; ++s) f(s);
+}
+
+/// f(k) for k in [0, count), in parallel, handed out one at a time: for pieces of unequal work.
+template <class F>
+void for_each_piece(std::size_t count, F&& f) {
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t k = 0; k < count; ++k) f(k);
+}
+
+/// Folds f(slot, accumulator&) over blocks of slots in parallel, then joins the blocks' accumulators in order with
+/// join(total&, block).
+template <class T, class F, class Join>
+T reduce_slots(std::size_t slots, T zero, F&& f, Join&& join) {
+  const std::size_t blocks = (slots + block_size - 1) / block_size;
+  std::vector<T> partial(blocks, zero);
+  for_each_piece(blocks, [&](std::size_t b) {
+    T sum = zero;
+    const std::size_t end = std::min(slots, (b + 1) * block_size);
+    for (std::size_t s = b * block_size; s < end; ++s) f(s, sum);
+    partial[b] = sum;
+  });
+  T total = zero;
+  for (const T& p : partial) join(total, p);
+  return total;
+}
+
+}  // namespace molten

@@ -1,0 +1,86 @@
+#include "core/particles.h"
+
+#include <sys/mman.h>
+
+#include <cstring>
+#include <new>
+#include <string>
+
+#include "core/particle_pass.h"
+
+namespace molten {
+
+void Buffer::resize(std::size_t bytes) {
+  if (bytes <= capacity_) return;
+  constexpr std::size_t huge_page = std::size_t{1} << 21;
+  const std::size_t alignment = bytes >= huge_page ? huge_page : 64;
+  const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+  data_.reset(std::aligned_alloc(alignment, rounded));
+  if (!data_) throw std::bad_alloc();
+  if (alignment == huge_page) madvise(data_.get(), rounded, MADV_HUGEPAGE);
+  capacity_ = rounded;
+}
+
+template <int Dim, class Real>
+Particles<Dim, Real>::Particles(FieldSet active) : active_(active) {
+  active_.set(field_index<Id>);
+}
+
+template <int Dim, class Real>
+void Particles<Dim, Real>::resize(std::size_t slots, std::size_t count) {
+  slots_ = slots;
+  count_ = count;
+  for_each_field([&]<class F>(F) {
+    if (!active_.test(field_index<F>)) return;
+    for (int k = 0; k < components<F, Dim>; ++k)
+      columns_[first_component<F>() + k].resize(slots * sizeof(stored_t<F, Real>));
+  });
+}
+
+template <int Dim, class Real>
+std::size_t Particles<Dim, Real>::bytes() const {
+  std::size_t sum = scratch_.capacity();
+  for (const Buffer& b : columns_) sum += b.capacity();
+  return sum;
+}
+
+template <int Dim, class Real>
+void Particles<Dim, Real>::permute(std::span<const std::int32_t> order, std::size_t count) {
+  for_each_field([&]<class F>(F) {
+    if (!active_.test(field_index<F>)) return;
+    using T = stored_t<F, Real>;
+    constexpr T filling = F::storage == Storage::id ? T(padding_id) : T(0);
+    for (int k = 0; k < components<F, Dim>; ++k) {
+      Buffer& column = columns_[first_component<F>() + k];
+      scratch_.resize(order.size() * sizeof(T));
+      const T* from = static_cast<const T*>(column.data());
+      T* to = static_cast<T*>(scratch_.data());
+      for_each_slot(order.size(), [&](std::size_t s) { to[s] = order[s] < 0 ? filling : from[order[s]]; });
+      column.swap(scratch_);
+    }
+  });
+  slots_ = order.size();
+  count_ = count;
+}
+
+template <int Dim, class Real>
+void Particles<Dim, Real>::archive(Archive& a) {
+  auto slots = static_cast<std::int64_t>(slots_), count = static_cast<std::int64_t>(count_);
+  a.value("particles/slots", slots);
+  a.value("particles/count", count);
+  if (a.loading()) resize(static_cast<std::size_t>(slots), static_cast<std::size_t>(count));
+  for_each_field([&]<class F>(F) {
+    if (!active_.test(field_index<F>)) return;
+    for (int k = 0; k < components<F, Dim>; ++k) {
+      const std::string name = "particles/" + std::string(F::name) + (components<F, Dim> > 1 ? std::to_string(k) : "");
+      a.array(name, number_type<stored_t<F, Real>>(), columns_[first_component<F>() + k].data(), slots_);
+    }
+  });
+}
+
+template class Particles<2, float>;
+template class Particles<2, double>;
+template class Particles<3, float>;
+template class Particles<3, double>;
+
+}  // namespace molten

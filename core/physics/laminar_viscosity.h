@@ -1,0 +1,29 @@
+// Laminar viscosity of a Newtonian fluid (Morris 1997): Σ m_j (η_i + η_j)/(ρ_i ρ_j) (W'/r) v_ij, one pass, no tensor.
+#pragma once
+
+#include <type_traits>
+
+#include "core/fields.h"
+#include "core/simd.h"
+
+namespace molten {
+
+template <class Real>
+struct LaminarViscosity {
+  using Reads = FieldList<Velocity, Compression>;
+  using Sums = FieldList<Acceleration>;
+  bool on = false;
+  Real strength = 0;  // 2 η/ρ0², Pa s m⁶/kg²
+
+  LaminarViscosity(double viscosity, double rest_density)
+      : on(viscosity > 0), strength(Real(2 * viscosity / (rest_density * rest_density))) {}
+
+  template <class Pair, class I, class J, class Out>
+  void operator()(const Pair&, const I& i, const J& j, Out& out) const {
+    using L = std::decay_t<decltype(i[compression])>;
+    const L inverse = reciprocal((L(1) + i[compression]) * (L(1) + j[compression]));
+    out.gradW(acceleration, (L(strength) * inverse) * (i[velocity] - j[velocity]));
+  }
+};
+
+}  // namespace molten

@@ -1,0 +1,145 @@
+// The two pair passes of a step: which terms they fuse, and what becomes of the sums.
+#include <vector>
+
+#include "core/pair_pass.h"
+#include "core/physics/artificial_viscosity.h"
+#include "core/physics/continuity.h"
+#include "core/physics/heat_conduction.h"
+#include "core/physics/laminar_viscosity.h"
+#include "core/physics/viscous_stress.h"
+#include "core/physics/xsph.h"
+#include "core/step.h"
+
+namespace molten {
+
+namespace {
+
+/// Strain rate → viscosity → stress, particle by particle.
+template <int Dim, class Real>
+struct ViscosityFinish {
+  State<Dim, Real>& s;
+
+  auto for_chunk(std::size_t) const {
+    return [this, stress_of = s.particles[stress], eta = s.particles[viscosity][0], delta = s.particles[compression][0],
+            T = s.particles[temperature][0]](std::size_t slot, const auto& sums) {
+      const Parameters<Dim>& p = s.parameters;
+      const Real rho0 = static_cast<Real>(p.eos.rest_density);
+      const SymTensor<Dim, Real> strain = (Real(1) / rho0) * sums[strain_rate];
+      const double magnitude = strain_magnitude(strain);
+      const double value = p.smd.viscosity(magnitude, T ? T[slot] : 0.0);
+      const Real density = rho0 * (1 + delta[slot]);
+      eta[slot] = static_cast<Real>(value);
+      stress_of.set(slot, (static_cast<Real>(value) / (density * density)) * strain);
+    };
+  }
+};
+
+/// Sums → columns of rates; keeps the extremes of its chunk.
+template <int Dim, class Real>
+struct RatesFinish {
+  State<Dim, Real>& s;
+  std::vector<Extremes>& extremes;
+
+  struct OfChunk {
+    const State<Dim, Real>& s;
+    Extremes& extremes;
+    const Particles<Dim, Real>& p;
+    const std::int64_t* ids = p[id][0];
+    Column<Acceleration, Dim, Real> a = p[acceleration];
+    Column<Velocity, Dim, Real> v = p[velocity];
+    Column<XsphVelocity, Dim, Real> x = p[xsph_velocity];
+    Real* compression_rates = p[compression_rate][0];
+    Real* temperature_rates = p[temperature_rate][0];
+    const Real* viscosities = p[viscosity][0];
+    const Real* compressions = p[compression][0];
+    Real inverse_rest_density = static_cast<Real>(1 / s.parameters.eos.rest_density);
+
+    template <class Sums>
+    void operator()(std::size_t slot, const Sums& sums) {
+      const bool padding = ids[slot] == padding_id;
+      const Real alive = padding ? Real(0) : Real(1);
+      double a2 = 0, v2 = 0, x2 = 0;
+      for (int d = 0; d < Dim; ++d) {
+        const Real total = alive * (sums[acceleration][d] + static_cast<Real>(s.parameters.gravity[d]));
+        a[d][slot] = total;
+        a2 += double(total) * total;
+        v2 += double(v[d][slot]) * v[d][slot];
+      }
+      compression_rates[slot] = alive * inverse_rest_density * sums[compression_rate];
+      if (s.features.heat) temperature_rates[slot] = alive * sums[temperature_rate];
+      if (s.features.xsph)
+        for (int d = 0; d < Dim; ++d) {
+          x[d][slot] = alive * sums[xsph_velocity][d];
+          x2 += double(x[d][slot]) * x[d][slot];
+        }
+      if (padding) return;
+      extremes.acceleration2 = std::max(extremes.acceleration2, a2);
+      extremes.speed2 = std::max(extremes.speed2, v2);
+      extremes.xsph2 = std::max(extremes.xsph2, x2);
+      extremes.finite &= a2 < 1e60 && v2 < 1e60;  // false for NaN
+      if (s.features.stress) {
+        const double density = s.parameters.eos.rest_density * (1 + compressions[slot]);
+        extremes.kinematic_viscosity = std::max(extremes.kinematic_viscosity, viscosities[slot] / density);
+      }
+    }
+  };
+  OfChunk for_chunk(std::size_t k) const { return {s, extremes[k], s.particles}; }
+};
+
+Extremes joined(const std::vector<Extremes>& parts) {
+  Extremes all;
+  for (const Extremes& e : parts) {
+    all.acceleration2 = std::max(all.acceleration2, e.acceleration2);
+    all.speed2 = std::max(all.speed2, e.speed2);
+    all.xsph2 = std::max(all.xsph2, e.xsph2);
+    all.kinematic_viscosity = std::max(all.kinematic_viscosity, e.kinematic_viscosity);
+    all.finite = all.finite && e.finite;
+  }
+  return all;
+}
+
+/// Calls f(kernel) with the run's kernel, weighted with the particle mass.
+template <int Dim, class Real, class F>
+void with_run_kernel(const State<Dim, Real>& s, F&& f) {
+  const Parameters<Dim>& p = s.parameters;
+  with_kernel<Real>(p.kernel, Dim, p.smoothing_length, p.particle_mass, std::forward<F>(f));
+}
+
+}  // namespace
+
+template <int Dim, class Real>
+void find_viscosity(State<Dim, Real>& s) {
+  const auto scope = s.timer.scope("viscosity");
+  const ViscosityFinish<Dim, Real> finish{s};
+  with_run_kernel(s, [&](const auto& kernel) {
+    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, StrainRateTerm{});
+  });
+}
+
+template <int Dim, class Real>
+void find_rates(State<Dim, Real>& s) {
+  const auto scope = s.timer.scope(s.features.heat ? "forces and heat" : "forces");
+  const Parameters<Dim>& p = s.parameters;
+  const double rho0 = p.eos.rest_density;
+  std::vector<Extremes> extremes(s.neighbours.chunks().size());
+  const RatesFinish<Dim, Real> finish{s, extremes};
+  with_run_kernel(s, [&](const auto& kernel) {
+    pair_pass<native_lanes<Real>>(
+        s.neighbours, s.particles, kernel, finish, Continuity{}, PressureForce{},
+        ArtificialViscosity<Real>(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, rho0),
+        LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0), StressForce{s.features.stress},
+        HeatConduction<Real>(s.features.heat ? p.diffusivity : 0, rho0), XsphTerm<Real>(s.features.xsph, rho0));
+  });
+  s.extremes = joined(extremes);
+  if (s.features.laminar) s.extremes.kinematic_viscosity = p.viscosity / rho0;
+}
+
+#define MOLTEN_INSTANTIATE(Dim, Real)               \
+  template void find_viscosity(State<Dim, Real>&);  \
+  template void find_rates(State<Dim, Real>&);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
+
+}  // namespace molten

@@ -1,0 +1,78 @@
+#include "core/state.h"
+
+#include <limits>
+
+#include "core/particle_pass.h"
+#include "core/step.h"
+
+namespace molten {
+
+const char* name_of(Limit limit) {
+  switch (limit) {
+    case Limit::sound: return "sound";
+    case Limit::viscous: return "viscous";
+    case Limit::force: return "force";
+    case Limit::conduction: return "conduction";
+    case Limit::fixed: return "fixed";
+    case Limit::output: return "output";
+  }
+  return "";
+}
+
+template <int Dim, class Real>
+void State<Dim, Real>::archive(Archive& a) {
+  a.value("clock/time", clock.time);
+  a.value("clock/step", clock.step);
+  a.value("clock/dt", clock.dt);
+  a.value("clock/previous_dt", clock.previous_dt);
+  auto limit = static_cast<std::int64_t>(clock.limit);
+  a.value("clock/limit", limit);
+  clock.limit = static_cast<Limit>(limit);
+  particles.archive(a);
+  neighbours.archive(a);
+  if (a.loading()) {
+    neighbours.relist(particles);
+    mark_near_wall(*this);
+  }
+}
+
+template <int Dim, class Real>
+State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Contact<Dim> contact,
+                            const Start& start) {
+  State<Dim, Real> s{features,
+                     parameters,
+                     std::move(contact),
+                     Particles<Dim, Real>(features.columns()),
+                     Neighbours<Dim, Real>({parameters.spacing, parameters.support_radius, parameters.skin},
+                                           parameters.domain),
+                     {}, {}, {}, {}};
+  Particles<Dim, Real>& p = s.particles;
+  const std::size_t count = start.position.size();
+  p.resize((count + cluster_size - 1) / cluster_size * cluster_size, count);
+  for_each_field([&]<class F>(F) {
+    if (!p.has(F{})) return;
+    for (auto* column : p[F{}].c) std::fill_n(column, p.slots(), std::remove_pointer_t<decltype(column)>(0));
+  });
+  std::fill_n(p[id][0], p.slots(), padding_id);
+  for (std::size_t k = 0; k < count; ++k) {
+    p[id][0][k] = static_cast<std::int64_t>(k);
+    for (int d = 0; d < Dim; ++d) {
+      p[position][d][k] = start.position[k][d];
+      p[velocity][d][k] = static_cast<Real>(start.velocity[k][d]);
+      if (p.has(half_velocity)) p[half_velocity][d][k] = p[velocity][d][k];
+    }
+    if (p.has(temperature)) p[temperature][0][k] = start.temperature[k];
+  }
+  sort_and_list(s);
+  return s;
+}
+
+#define MOLTEN_INSTANTIATE(Dim, Real)                                                                       \
+  template struct State<Dim, Real>;                                                                        \
+  template State<Dim, Real> make_state(const Features&, const Parameters<Dim>&, Contact<Dim>, const Start&);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
+
+}  // namespace molten

@@ -1,0 +1,60 @@
+// What a run owns. No globals, no singletons: everything a step touches hangs here.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/boundary/contact.h"
+#include "core/features.h"
+#include "core/neighbours.h"
+#include "core/parameters.h"
+#include "core/particles.h"
+#include "core/timer.h"
+
+namespace molten {
+
+/// Which bound set the time step.
+enum class Limit : int { sound, viscous, force, conduction, fixed, output };
+const char* name_of(Limit limit);
+
+struct Clock {
+  double time = 0;         // s
+  std::int64_t step = 0;
+  double dt = 0;           // s; of this step, once chosen
+  double previous_dt = 0;  // s; of the step before
+  Limit limit = Limit::sound;
+  double stop = 1e300;     // s; the next time that a step must end on
+};
+
+/// The largest values that the last rates saw; they bound the next time step.
+struct Extremes {
+  double speed2 = 0;                // m²/s²
+  double acceleration2 = 0;         // m²/s⁴
+  double kinematic_viscosity = 0;   // m²/s
+  double xsph2 = 0;                 // m²/s²
+  bool finite = true;
+};
+
+template <int Dim, class Real>
+struct State {
+  Features features;                  // fixed for the run
+  Parameters<Dim> parameters;
+  Contact<Dim> contact;
+  Particles<Dim, Real> particles;
+  Neighbours<Dim, Real> neighbours;   // good between sorts
+  std::vector<std::uint8_t> near_wall;  // by cluster: a wall may be met before the next sort
+  Clock clock;                        // this step
+  Extremes extremes;
+  Timer timer;
+
+  void archive(Archive& a);
+  std::size_t bytes() const { return particles.bytes() + neighbours.bytes() + near_wall.capacity(); }
+};
+
+/// The start of a run, sorted and listed.
+template <int Dim, class Real>
+State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Contact<Dim> contact,
+                            const Start& start);
+
+}  // namespace molten

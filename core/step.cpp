@@ -1,0 +1,99 @@
+#include "core/step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/diagnostics.h"
+#include "core/error.h"
+#include "core/particle_pass.h"
+
+namespace molten {
+
+template <int Dim, class Real>
+void step(State<Dim, Real>& s) {
+  if (s.neighbours.is_due() || s.parameters.sort_each_step) sort_and_list(s);
+  if (s.features.stress) find_viscosity(s);
+  find_rates(s);
+  require_sane(s);
+  choose_time_step(s);
+  integrate_and_collide(s);
+  s.clock.time = s.clock.limit == Limit::output && s.clock.time + s.clock.dt > s.clock.stop * (1 - 1e-14)
+                     ? s.clock.stop
+                     : s.clock.time + s.clock.dt;
+  ++s.clock.step;
+}
+
+template <int Dim, class Real>
+void sort_and_list(State<Dim, Real>& s) {
+  const auto scope = s.timer.scope("sort and list");
+  s.neighbours.rebuild(s.particles);
+  mark_near_wall(s);
+  prepare(s);
+}
+
+/// A cluster is near a wall if a particle of it may touch one within a spacing of its way.
+template <int Dim, class Real>
+void mark_near_wall(State<Dim, Real>& s) {
+  s.near_wall.assign(s.neighbours.clusters(), 0);
+  if (!s.features.contact) return;
+  const auto x = s.particles[position];
+  for_each_slot(s.neighbours.clusters(), [&](std::size_t c) {
+    for (std::size_t k = c * cluster_size; k < (c + 1) * cluster_size; ++k) {
+      if (s.particles.is_padding(k)) continue;
+      Point<Dim> point;
+      for (int d = 0; d < Dim; ++d) point[d] = x[d][k];
+      if (s.contact.may_touch(point, s.parameters.spacing)) s.near_wall[c] = 1;
+    }
+  });
+}
+
+template <int Dim, class Real>
+void require_sane(const State<Dim, Real>& s) {
+  if (!s.extremes.finite) throw Error(ExitCode::diverged, find_non_finite(s));
+  const double speed = std::sqrt(s.extremes.speed2), sound = s.parameters.eos.sound_speed;
+  if (speed > 30 * sound)
+    throw Error(ExitCode::diverged, "the run blew up: a particle moves at " + std::to_string(speed / sound) +
+                                        " times the sound speed; raise numerics.sound_speed, lower numerics.courant or "
+                                        "add numerics.xsph");
+}
+
+template <int Dim, class Real>
+void choose_time_step(State<Dim, Real>& s) {
+  const Parameters<Dim>& p = s.parameters;
+  const double h = p.smoothing_length;
+  Clock& clock = s.clock;
+  const auto limit = [&](double dt, Limit by) {
+    if (dt < clock.dt) clock.dt = dt, clock.limit = by;
+  };
+  clock.previous_dt = clock.dt;
+  clock.dt = 1e300;
+  if (p.fixed_dt) {
+    limit(*p.fixed_dt, Limit::fixed);
+  } else {
+    limit(p.courant_sound * h / (p.eos.sound_speed + std::sqrt(s.extremes.speed2)), Limit::sound);
+    limit(p.courant_force * std::sqrt(h / (std::sqrt(s.extremes.acceleration2) + 1e-300)), Limit::force);
+    if (s.extremes.kinematic_viscosity > 0)
+      limit(p.courant_viscous * h * h / s.extremes.kinematic_viscosity, Limit::viscous);
+    if (p.diffusivity > 0) {
+      constexpr double conduction_constant = 3.5;  // h² ∫|W'|/r of the Wendland kernel, the largest of the common ones
+      limit(p.courant_conduction * h * h / (2 * conduction_constant * p.diffusivity), Limit::conduction);
+    }
+  }
+  // Land on the stop; two halves rather than a step and a sliver.
+  const double left = clock.stop - clock.time;
+  if (clock.dt >= left) limit(left, Limit::output), clock.limit = Limit::output;
+  else if (2 * clock.dt > left) limit(left / 2, Limit::output);
+}
+
+#define MOLTEN_INSTANTIATE(Dim, Real)                       \
+  template void step(State<Dim, Real>&);                    \
+  template void sort_and_list(State<Dim, Real>&);           \
+  template void mark_near_wall(State<Dim, Real>&);          \
+  template void require_sane(const State<Dim, Real>&);      \
+  template void choose_time_step(State<Dim, Real>&);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
+
+}  // namespace molten

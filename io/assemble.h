@@ -1,0 +1,34 @@
+// From a scene to what a run starts from: meshes read, bodies filled, walls built, everything checked.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/boundary/contact.h"
+#include "core/boundary/triangle_mesh.h"
+#include "core/features.h"
+#include "core/parameters.h"
+#include "core/scene.h"
+
+namespace molten {
+
+/// The walls of a scene for the solver.
+template <int Dim>
+std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing);
+
+/// The walls as one surface for pictures (2-D outlines: thin strips); planes become squares about the fluid.
+TriangleMesh picture_of_walls(const Scene& scene, const Start& start);
+
+/// The bodies filled with particles. Throws Error(usage) when the run would not fit in memory, Error(geometry) for bad
+/// meshes.
+Start fill_bodies(const Scene& scene, const Features& features);
+
+/// Throws Error(geometry), with the number of particles and the place of the first, if particles start inside a wall or on
+/// top of each other.
+template <int Dim>
+void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact);
+
+/// Hash of everything that may not change between a stop and its resume: start, walls, numerics.
+std::string fingerprint(const Scene& scene, const Start& start);
+
+}  // namespace molten

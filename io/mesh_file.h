@@ -1,0 +1,28 @@
+// Triangle meshes from OBJ, STL (text and binary) and PLY files. assimp does the reading in a short-lived child process
+// with memory and time limits, so that a hostile file ends in one clear line; what comes back is validated here.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/boundary/triangle_mesh.h"
+
+namespace molten {
+
+/// Vertices that share a position are welded. Throws Error(geometry): missing (names the file and the command that
+/// fetches the models), unreadable, empty, truncated, non-finite vertex.
+TriangleMesh read_mesh(const std::filesystem::path& file);
+
+/// One line a defect, each with where it is; empty: a closed, consistently outward-oriented surface.
+struct MeshReport {
+  std::size_t open_edges = 0, flipped_edges = 0, degenerate_triangles = 0;
+  double volume = 0;  // m³, signed: negative is inverted
+  Vec3 first_defect = Vec3::Zero();  // m; midpoint of the first open or flipped edge
+};
+MeshReport inspect(const TriangleMesh& mesh);
+
+/// Throws Error(geometry) unless the mesh is closed, consistently oriented and not inverted; `name` goes in the line.
+void require_closed(const TriangleMesh& mesh, const std::string& name);
+
+}  // namespace molten

@@ -1,0 +1,34 @@
+// The progress line of a run: rewritten in place on a terminal, plain lines every few seconds elsewhere.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "core/state.h"
+
+namespace molten {
+
+class Progress {
+ public:
+  Progress(double start_time, double end_time, double initial_energy);
+
+  /// True when a line is due, so that its figures are worked out only then.
+  bool is_due() const;
+  void show(const Clock& clock, std::int64_t particles, double energy);
+  void finish();  // ends a rewritten line
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  double start_time_, end_time_, initial_energy_;
+  bool terminal_;
+  Time begun_, last_;
+  std::int64_t last_step_ = -1;
+  bool shown_ = false;
+};
+
+/// "2 h 05 min", "3 min 20 s", "12 s"
+std::string in_words(double seconds);
+
+}  // namespace molten
