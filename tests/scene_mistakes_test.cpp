@@ -1,0 +1,163 @@
+// Every mistake in a scene file ends in one line with its place and a remedy.
+#include <gtest/gtest.h>
+
+#include "tests/scene_texts.h"
+
+namespace molten {
+namespace {
+
+using namespace scene_texts;
+
+struct Mistake {
+  const char* from;
+  const char* to;
+  const char* fragment;
+};
+
+const std::vector<Mistake> mistakes = {
+    // unknown keys, wrong types
+    {"density = 1200.0", "densty = 1200.0", "s.toml:10:1: fluid.densty: unknown key; did you mean density?"},
+    {"[output]", "[outputs]", "s.toml:45:2: outputs: unknown key; did you mean output?"},
+    {"slip = 0.5", "friction = 0.5", "s.toml:34:1: boundary.0.friction: unknown key; known: "},
+    {"radius = 0.9", "radios = 0.9", "s.toml:37:32: boundary.1.cylinder.radios: unknown key"},
+    {"title = \"A good scene\"", "title = 7", "s.toml:3:9: scene.title: is a number; give a string"},
+    {"title = \"A good scene\"", "title = \"\"", "scene.title: is empty"},
+    {"title = \"A good scene\"", "title = \"a\\nb\"", "control characters"},
+    {"density = 1200.0", "density = \"heavy\"",
+     "s.toml:10:11: fluid.density: is a string; give a number above 0 in kg/m³"},
+    {"density = 1200.0", "density = true", "is true or false"},
+    {"density = 1200.0", "density = 2020-01-01", "is a date"},
+    {"inside = true", "inside = 1", "boundary.1.inside: is a number; give true or false"},
+    {"[run]", "[[run]]", "run: stands more than once"},
+    {"[[boundary]]\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\nslip = 0.5\n\n[[boundary]]", "[boundary]",
+     "write [[boundary]]"},
+    {"courant = { sound = 0.15 }", "courant = 0.15", "courant: is a number; give a table: sound"},
+    // numbers out of range
+    {"density = 1200.0", "density = 0", "fluid.density: 0 is out of range"},
+    {"density = 1200.0", "density = -1", "fluid.density: -1 is out of range; give a number above 0 in kg/m³"},
+    {"density = 1200.0", "density = nan", "nan is out of range"},
+    {"density = 1200.0", "density = inf", "inf is out of range"},
+    {"density = 1200.0", "density = 1e200", "out of range"},
+    {"particles = 1000", "particles = 0", "give a whole number from 1"},
+    {"particles = 1000", "particles = -5", "-5 does not do"},
+    {"particles = 1000", "particles = 10.5", "10.5 does not do"},
+    {"particles = 1000", "particles = 3000000000", "give a whole number"},
+    {"end_time = 0.4", "end_time = 0.0", "s.toml:42:12: run.end_time: 0 is out of range"},
+    {"end_time = 0.4", "end_time = -inf", "run.end_time: -inf"},
+    {"max_steps = 100", "max_steps = 0", "run.max_steps"},
+    {"slip = 0.5", "slip = 1.5", "at least 0 and at most 1"},
+    {"restitution = 0.2", "restitution = -0.1", "s.toml:39:15: boundary.1.restitution"},
+    {"frames_per_second = 50", "frames_per_second = -1", "output.frames_per_second"},
+    {"radius = 0.5", "radius = 0", "fluid.body.0.sphere.radius: 0 is out of range"},
+    {"n = 0.5", "n = 0", "fluid.rheology.n: 0 is out of range"},
+    {"n = 0.5", "n = 2.1", "give a number above 0 and at most 2"},
+    {"jump_number = [15, 150]", "jump_number = -1", "jump_number: -1 is out of range; give a number above -1"},
+    {"jump_number = [15, 150]", "jump_number = [-2, 150]", "-2 is out of range"},
+    {"yield_stress = 60.0", "yield_stress = 0", "yield_stress: 0 is out of range"},
+    {"diffusivity = 1e-4", "diffusivity = -1e-4", "fluid.heat.diffusivity"},
+    {"courant = { sound = 0.15 }", "courant = { sound = 0 }", "numerics.courant.sound: 0"},
+    {"xsph = { epsilon = 0.4 }", "xsph = { epsilon = 2 }", "numerics.xsph.epsilon: 2"},
+    // vectors
+    {"gravity = [0.0, 0.0, -9.81]", "gravity = [0.0, -9.81]",
+     "s.toml:4:11: scene.gravity: has 2 entries; give 3 numbers"},
+    {"gravity = [0.0, 0.0, -9.81]", "gravity = -9.81", "scene.gravity: is a number; give an array of 3"},
+    {"gravity = [0.0, 0.0, -9.81]", "gravity = [0, 0, \"down\"]", "scene.gravity: is a string"},
+    {"velocity = [0, 0, -1]", "velocity = [0, 0, nan]", "fluid.body.0.velocity: nan"},
+    {"max = [2, 2, 2]", "max = [2, 0, 2]", "scene.domain.min: is not below max along y"},
+    {"melting_range = [40, 60]", "melting_range = [60, 40]", "does not rise"},
+    {"normal = [0, 0, 1]", "normal = [0, 0, 0]", "has no length"},
+    // missing
+    {"end_time = 0.4\n", "", "s.toml:41:1: run.end_time: missing; give the simulated time"},
+    {"particles = 1000\n", "", "s.toml:8:1: fluid.particles: missing; give particles (how many) or spacing"},
+    {"initial = { bottom = 20.0, top = 90.0 }", "", "fluid.heat.initial: missing"},
+    {"initial = { bottom = 20.0, top = 90.0 }", "initial = { bottom = 20.0 }", "fluid.heat.initial.top: missing"},
+    {"consistency = 20.0\n", "", "consistency: missing; give it, or dimensionless"},
+    {"jump_number = [15, 150]\n", "", "jump_number: missing"},
+    {"radius = 0.9, ", "", "boundary.1.cylinder.radius: missing"},
+    {"plane = { point = [0, 0, 0], normal = [0, 0, 1] }\n", "",
+     "s.toml:32:1: boundary.0: has no shape; add one of mesh, sphere"},
+    {"domain = { min = [0, 0, 0], max = [2, 2, 2] }\n", "", "scene.periodic: needs the size of the period"},
+    // contradictions
+    {"particles = 1000", "particles = 1000\nspacing = 0.1", "fluid.spacing: stands beside particles"},
+    {"density = 1200.0", "density = 1200.0\nsphere = { center = [1, 1, 1], radius = 1 }", "stands beside a shape"},
+    {"density = 1200.0", "density = 1200.0\nvelocity = [0, 0, 1]", "fluid.velocity: stands beside bodies"},
+    {"slip = 0.5", "slip = 0.5\nbox = { min = [0, 0, 0], max = [1, 1, 1] }", "is a second shape beside"},
+    {"slip = 0.5", "inside = true", "boundary.0.inside: is for closed shapes"},
+    {"slip = 0.5", "height = 0.5", "boundary.0.height: goes with mesh"},
+    {"slip = 0.5", "cell_size = 0.5", "boundary.0.cell_size: goes with terrain"},
+    {"sphere = { center = [1, 1, 1], radius = 0.5 }", "plane = { point = [0, 0, 0], normal = [0, 0, 1] }",
+     "put it into a [[boundary]]"},
+    {"model = \"smd\"\n", "", "s.toml:21:5: fluid.rheology.n: belongs to model \"smd\""},
+    {"n = 0.5", "viscosity = 0.5", "viscosity: belongs to model \"newtonian\""},
+    {"yield_stress = 60.0", "dimensionless = true", "consistency: is 1 when dimensionless"},
+    {"jump_number = [15, 150]", "jump_number = [150, 15]", "falls from hot to cold"},
+    {"melting_range = [40, 60]\n", "", "nothing melts; add melting_range"},
+    {"kernel = \"gaussian\"", "gamma = 7", "numerics.gamma: has no effect with state_equation"},
+    {"xsph = { epsilon = 0.4 }", "xsph = true", "true says too little"},
+    // choices
+    {"model = \"smd\"", "model = \"smt\"", "unknown choice \"smt\"; did you mean smd?"},
+    {"kernel = \"gaussian\"", "kernel = \"wendland\"", "did you mean wendland_c2?"},
+    {"preset = \"paiva\"", "preset = \"dias\"", "numerics.preset: \"dias\" is not available in this version; use"},
+    {"preset = \"paiva\"", "preset = \"queiroz\"", "is not available"},
+    {"preset = \"paiva\"", "preset = \"sphysics\"", "unknown choice \"sphysics\"; known: molten, paiva"},
+    {"precision = \"double\"", "precision = \"half\"", "unknown choice \"half\""},
+    {"periodic = [\"x\"]", "periodic = [\"w\"]", "\"w\" is no axis; this scene has x, y, z"},
+    {"periodic = [\"x\"]", "periodic = [\"x\", \"x\"]", "has \"x\" twice"},
+    {"periodic = [\"x\"]", "periodic = true", "give an array of strings"},
+    {"fields = [\"density\", \"temperature\"]", "fields = [\"Density!\"]", "\"Density!\" is no field"},
+    {"checkpoint_every = \"5 min\"", "checkpoint_every = \"soon\"",
+     "s.toml:48:20: output.checkpoint_every: \"soon\" is no duration"},
+    {"checkpoint_every = \"5 min\"", "checkpoint_every = \"-5 min\"", "is no duration"},
+    {"checkpoint_every = \"5 min\"", "checkpoint_every = \"nan s\"", "is no duration"},
+    {"checkpoint_every = \"5 min\"", "checkpoints_kept = 0", "output.checkpoints_kept"},
+    // polygons
+    {"[[0, 0], [0, 1], [1, 1], [1, 0]]", "[[0, 0], [1, 1], [1, 0], [0, 1]]", "cross or touch; untangle them"},
+    {"[[0, 0], [0, 1], [1, 1], [1, 0]]", "[[0, 0], [0, 1]]", "has 2 points"},
+    {"[[0, 0], [0, 1], [1, 1], [1, 0]]", "[[0, 0], [0, 1], [1, 0], [0, 0]]", "stands twice in a row"},
+    {"[[0, 0], [0, 1], [1, 1], [1, 0]]", "[[0, 0], [1, 1], [2, 2]]", "encloses nothing"},
+    {"[[0, 0], [0, 1], [1, 1], [1, 0]]", "[[0, 0], [0, 1, 3], [1, 1]]", "no pair"},
+    {"bottom = 0, top = 0.1", "bottom = 0.1, top = 0.1", "is not below top"},
+    {"bottom = 0, top = 0.1", "top = 0.1", "polygon.bottom: missing"},
+    // syntax
+    {"density = 1200.0", "density = ", "s.toml:10:"},
+    {"density = 1200.0", "density = 12,0", "not valid TOML"},
+    {"density = 1200.0", "density = 1\ndensity = 2", "s.toml:11:"},
+    {"title = \"A good scene\"", "title = A good scene", "s.toml:3:"},
+    {"title = \"A good scene\"", "title = \"\xFF\xFE\"", "s.toml:3:"},
+};
+
+TEST(SceneMistakes, MistakesAreNamedWithPlaceAndRemedy) {
+  for (const Mistake& mistake : mistakes) {
+    SCOPED_TRACE(mistake.to);
+    const std::string message = complaint(replaced(good, mistake.from, mistake.to));
+    expect_complaint(message, mistake.fragment);
+    EXPECT_EQ(message.rfind("s.toml:", 0), 0U) << message;
+  }
+}
+
+TEST(SceneMistakes, MistakesInTwoDimensions) {
+  const std::string box = "box = { min = [0, 0], max = [1, 2] }";
+  const std::vector<Mistake> cases = {
+      {"dimensions = 2", "dimensions = 4", "scene.dimensions: 4 does not do; give a whole number from 2 to 3"},
+      {"dimensions = 2", "dimensions = 3", "fluid.box.min: has 2 entries; give 3 numbers"},
+      {"dimensions = 2", "dimensions = 2\ngravity = [0, 0, -9.81]", "scene.gravity: has 3 entries; give 2"},
+      {"dimensions = 2", "dimensions = 2\nperiodic = [\"z\"]", "\"z\" is no axis; this scene has x, y"},
+      {box.c_str(), "mesh = \"a.obj\"", "fluid.mesh: is for 3-D scenes"},
+      {box.c_str(), "polygon = { points = [[0, 0], [1, 0], [0, 1]], bottom = 0 }", "polygon.bottom: is for 3-D scenes"},
+      {box.c_str(), "cone = { base = [0, 0], radius = 0, height = 1 }", "0 at both ends"},
+      {box.c_str(), "", "fluid: has no shape"},
+      {"[run]", "[fluid.heat]\ndiffusivity = 1\nmelting_range = [1, 2]\ninitial = 1\n[run]", "acts on the jump_number"},
+      {"[run]", "[fluid.rheology]\nmodel = \"newtonian\"\n[run]", "fluid.rheology.viscosity: missing"},
+      {"[run]", "[[fluid.body]]\nbox = { min = [0, 0], max = [1, 2] }\ntemperature = 3\n[run]",
+       "stands beside a shape"},
+      {"[run]", "[[boundary]]\nterrain = \"a.asc\"\n[run]", "terrain: is for 3-D scenes"},
+      {"[run]\nend_time = 1", "", "run: missing; add [run]"},
+  };
+  for (const Mistake& mistake : cases) {
+    expect_complaint(complaint(replaced(flat, mistake.from, mistake.to)), mistake.fragment);
+  }
+  expect_complaint(complaint(""), "fluid: missing");
+}
+
+}  // namespace
+}  // namespace molten
