@@ -122,27 +122,35 @@ Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>
   return shot;
 }
 
+namespace {
+
+template <int Dim, class Real>
+std::int64_t count_between(const State<Dim, Real>& s, std::size_t cluster, ListEntry entry, double support2) {
+  const auto local = s.particles[local_position];
+  const auto& shift = s.neighbours.shifts().of(entry);
+  const std::size_t other = s.neighbours.shifts().cluster(entry);
+  std::int64_t count = 0;
+  for (std::size_t i = cluster * cluster_size; i < (cluster + 1) * cluster_size; ++i)
+    for (std::size_t j = other * cluster_size; j < (other + 1) * cluster_size; ++j) {
+      double r2 = 0;
+      for (int d = 0; d < Dim; ++d) r2 += std::pow(local[d][i] - shift[d] - local[d][j], 2);
+      const bool itself = i == j && std::all_of(shift.begin(), shift.end(), [](double x) { return x == 0; });
+      count += r2 < support2 && !itself && !s.particles.is_padding(i) && !s.particles.is_padding(j);
+    }
+  return count;
+}
+
+}  // namespace
+
 template <int Dim, class Real>
 std::int64_t count_pairs(const State<Dim, Real>& s) {
-  const auto local = s.particles[local_position];
   const auto chunks = s.neighbours.chunks();
   const double support2 = s.parameters.support_radius * s.parameters.support_radius;
   std::vector<std::int64_t> counts(chunks.size(), 0);
   for_each_piece(chunks.size(), [&](std::size_t k) {
     const ClusterChunk& chunk = chunks[k];
     for (std::uint32_t c = chunk.begin; c < chunk.end; ++c)
-      for (std::uint32_t r = chunk.run_begin[c - chunk.begin]; r < chunk.run_begin[c - chunk.begin + 1]; ++r) {
-        const ClusterRun& run = chunk.runs[r];
-        for (std::size_t i = c * cluster_size; i < (c + std::size_t{1}) * cluster_size; ++i)
-          for (std::size_t j = run.first * cluster_size; j < (std::size_t{run.first} + run.count) * cluster_size; ++j) {
-            double r2 = 0;
-            for (int d = 0; d < Dim; ++d) {
-              const double dx = local[d][i] - s.neighbours.grid().shift(d, run.offset[d]) - local[d][j];
-              r2 += dx * dx;
-            }
-            counts[k] += r2 < support2 && i != j && !s.particles.is_padding(i) && !s.particles.is_padding(j);
-          }
-      }
+      for (const ListEntry e : chunk.of(c)) counts[k] += count_between(s, c, e, support2);
   });
   return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
 }

@@ -1,6 +1,7 @@
 #include "core/neighbours.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -36,14 +37,14 @@ void Neighbours<Dim, Real>::rebuild(Particles<Dim, Real>& particles) {
   choose_grid(particles);
   sort(particles);
   find_boxes(particles);
-  list_runs();
+  list_neighbours();
   displacement_ = 0;
 }
 
 template <int Dim, class Real>
 void Neighbours<Dim, Real>::relist(Particles<Dim, Real>& particles) {
   find_boxes(particles);
-  list_runs();
+  list_neighbours();
 }
 
 // ---- the grid -------------------------------------------------------------------------------------------------------
@@ -233,43 +234,64 @@ void Neighbours<Dim, Real>::find_boxes(const Particles<Dim, Real>& particles) {
 }
 
 template <int Dim, class Real>
-void Neighbours<Dim, Real>::list_runs() {
-  const double range = settings_.support_radius + settings_.skin;
-  // Columns within reach across the axis; when relisting, particles may have left their column by half a skin each.
-  std::vector<Cell<Dim>> reach;
-  std::array<int, 3> far{0, 0, 0};
-  for (int d = 0; d < Grid<Dim>::along; ++d)
-    far[d] = static_cast<int>(std::ceil((range + settings_.skin) / grid_.width[d]));
-  for (int b = -far[1]; b <= far[1]; ++b)
-    for (int a = -far[0]; a <= far[0]; ++a) {
-      Cell<Dim> offset{};
-      offset[0] = a;
-      if constexpr (Dim == 3) offset[1] = b;
-      reach.push_back(offset);
+void Neighbours<Dim, Real>::number_shifts() {
+  // When relisting, particles may have left their cell by half a skin each.
+  const double range = settings_.support_radius + 2 * settings_.skin;
+  std::size_t count = 1;
+  for (int d = 0; d < Dim; ++d) {
+    shifts_.reach[d] = static_cast<int>(std::ceil((range + (d == Grid<Dim>::along ? longest_cluster * settings_.spacing : 0)) /
+                                                  grid_.width[d]));
+    count *= 2 * shifts_.reach[d] + 1;
+  }
+  shifts_.cluster_bits = 32 - static_cast<int>(std::bit_width(count - 1));
+  if (clusters() >> shifts_.cluster_bits)
+    throw Error(ExitCode::usage, "numerics: " + std::to_string(clusters() * cluster_size) +
+                                     " particles at this support radius are more than one neighbour list holds; lower "
+                                     "numerics.smoothing_ratio or the number of particles");
+  shifts_.shift.resize(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    std::size_t rest = n;
+    for (int d = Dim - 1; d >= 0; --d) {
+      const int sides = 2 * shifts_.reach[d] + 1;
+      shifts_.shift[n][d] = grid_.shift(d, static_cast<int>(rest % sides) - shifts_.reach[d]);
+      rest /= sides;
     }
+  }
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::list_neighbours() {
+  number_shifts();
   const std::size_t count = (clusters() + clusters_a_chunk - 1) / clusters_a_chunk;
   chunks_.resize(count);
   for_each_piece(count, [&](std::size_t k) {
     ClusterChunk& chunk = chunks_[k];
     chunk.begin = static_cast<std::uint32_t>(k * clusters_a_chunk);
     chunk.end = static_cast<std::uint32_t>(std::min<std::size_t>(clusters(), (k + 1) * clusters_a_chunk));
-    list_chunk(chunk, reach);
+    list_chunk(chunk);
   });
 }
 
 template <int Dim, class Real>
-void Neighbours<Dim, Real>::list_chunk(ClusterChunk& chunk, std::span<const Cell<Dim>> reach) const {
-  chunk.runs.clear();
-  chunk.run_begin.clear();
+void Neighbours<Dim, Real>::list_chunk(ClusterChunk& chunk) const {
+  chunk.entries.clear();
+  chunk.entry_begin.clear();
   for (std::uint32_t c = chunk.begin; c < chunk.end; ++c) {
-    chunk.run_begin.push_back(static_cast<std::uint32_t>(chunk.runs.size()));
-    for (const Cell<Dim>& offset : reach) append_runs(chunk, c, offset);
+    chunk.entry_begin.push_back(static_cast<std::uint32_t>(chunk.entries.size()));
+    Cell<Dim> offset{};
+    const int far = Dim == 3 ? shifts_.reach[1] : 0;
+    for (int b = -far; b <= far; ++b)
+      for (int a = -shifts_.reach[0]; a <= shifts_.reach[0]; ++a) {
+        offset[0] = a;
+        if constexpr (Dim == 3) offset[1] = b;
+        append_column(chunk, c, offset);
+      }
   }
-  chunk.run_begin.push_back(static_cast<std::uint32_t>(chunk.runs.size()));
+  chunk.entry_begin.push_back(static_cast<std::uint32_t>(chunk.entries.size()));
 }
 
 template <int Dim, class Real>
-void Neighbours<Dim, Real>::append_runs(ClusterChunk& chunk, std::uint32_t cluster, const Cell<Dim>& offset) const {
+void Neighbours<Dim, Real>::append_column(ClusterChunk& chunk, std::uint32_t cluster, const Cell<Dim>& offset) const {
   Cell<Dim> column{};
   for (int d = 0; d < Grid<Dim>::along; ++d) {
     column[d] = cells_[cluster][d] + offset[d];
@@ -315,23 +337,15 @@ void Neighbours<Dim, Real>::append_image(ClusterChunk& chunk, std::uint32_t clus
     if (top < boxes_.lower[along][cluster] - range - static_cast<float>(settings_.skin)) first += half + 1, count -= half + 1;
     else count = half;
   }
-  ClusterRun* run = nullptr;
   for (std::uint32_t other = first; other < end; ++other) {
     const float shift = along_shift(other);
     if (boxes_.lower[along][other] + shift > boxes_.upper[along][cluster] + range + static_cast<float>(settings_.skin)) break;
     float distance2 = gap(along, other, shift) * gap(along, other, shift);
     for (int d = 0; d < along; ++d) distance2 += gap(d, other, across[d]) * gap(d, other, across[d]);
     if (distance2 > range * range) continue;
-    const auto segments = static_cast<std::int8_t>(cells_[other][along] + offset[along] - segment);
-    if (run && run->first + run->count == other && run->offset[along] == segments && run->count < 255) {
-      ++run->count;
-      continue;
-    }
-    ClusterRun next{other, 1, {}};
-    for (int d = 0; d < along; ++d) next.offset[d] = static_cast<std::int8_t>(offset[d]);
-    next.offset[along] = segments;
-    chunk.runs.push_back(next);
-    run = &chunk.runs.back();
+    Cell<Dim> cells = offset;
+    cells[along] += cells_[other][along] - segment;
+    chunk.entries.push_back(shifts_.number(cells) << shifts_.cluster_bits | other);
   }
 }
 
@@ -339,7 +353,7 @@ template <int Dim, class Real>
 std::size_t Neighbours<Dim, Real>::bytes() const {
   std::size_t sum = bytes_of(cells_) + bytes_of(column_begin_) + bytes_of(entries_) + bytes_of(entry_begin_) + bytes_of(chunks_);
   for (int d = 0; d < Dim; ++d) sum += bytes_of(boxes_.lower[d]) + bytes_of(boxes_.upper[d]);
-  for (const ClusterChunk& c : chunks_) sum += bytes_of(c.runs) + bytes_of(c.run_begin);
+  for (const ClusterChunk& c : chunks_) sum += bytes_of(c.entries) + bytes_of(c.entry_begin);
   return sum;
 }
 

@@ -1,5 +1,5 @@
 // Order and neighbours of the particles: sorts them into clusters along the grid's columns, and lists for every cluster
-// the runs of clusters within the support radius and a skin. Good until a particle has moved half a skin.
+// the clusters within the support radius and a skin. Good until a particle has moved half a skin.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,36 @@
 
 namespace molten {
 
-/// Consecutive clusters that share an origin. `offset`: cells from the listing cluster's origin to theirs, images of
-/// periodic axes counted on, so a periodic shift needs nothing more.
-struct ClusterRun {
-  std::uint32_t first;
-  std::uint8_t count;
-  std::array<std::int8_t, 3> offset;
-};
+/// A neighbour cluster in the list: its number in the low bits, above them which shift leads from the listing cluster's
+/// origin to its own (images of periodic axes counted on, so a periodic neighbour needs nothing more).
+using ListEntry = std::uint32_t;
 
 /// Clusters that are handled together by one thread: the fixed block of all pair work.
 struct ClusterChunk {
-  std::uint32_t begin = 0, end = 0;      // clusters
-  std::vector<ClusterRun> runs;          // of all its clusters, in order
-  std::vector<std::uint32_t> run_begin;  // end − begin + 1 positions in runs
+  std::uint32_t begin = 0, end = 0;        // clusters
+  std::vector<ListEntry> entries;          // of all its clusters, in order
+  std::vector<std::uint32_t> entry_begin;  // end − begin + 1 positions in entries
+
+  std::span<const ListEntry> of(std::uint32_t cluster) const {
+    const std::uint32_t k = cluster - begin;
+    return {entries.data() + entry_begin[k], entries.data() + entry_begin[k + 1]};
+  }
+};
+
+/// The offsets between neighbouring cells' origins, numbered: across by columns, along by segments.
+template <int Dim>
+struct ShiftTable {
+  std::array<int, Dim> reach{};  // cells to each side
+  int cluster_bits = 32;         // of a ListEntry; the rest number the shift
+  std::vector<std::array<double, Dim>> shift;  // m, on the grid's quantum
+
+  std::uint32_t number(const Cell<Dim>& offset) const {
+    std::uint32_t n = 0;
+    for (int d = 0; d < Dim; ++d) n = n * (2 * reach[d] + 1) + static_cast<std::uint32_t>(offset[d] + reach[d]);
+    return n;
+  }
+  std::uint32_t cluster(ListEntry e) const { return e & ((std::uint64_t{1} << cluster_bits) - 1); }
+  const std::array<double, Dim>& of(ListEntry e) const { return shift[std::uint64_t{e} >> cluster_bits]; }
 };
 
 struct NeighbourSettings {
@@ -55,6 +72,7 @@ class Neighbours {
   const Grid<Dim>& grid() const { return grid_; }
   const NeighbourSettings& settings() const { return settings_; }
   std::span<const ClusterChunk> chunks() const { return chunks_; }
+  const ShiftTable<Dim>& shifts() const { return shifts_; }
   const Cell<Dim>& cell(std::size_t cluster) const { return cells_[cluster]; }
   std::size_t clusters() const { return cells_.size(); }
   std::size_t dropped() const { return dropped_; }  // particles that have left the domain so far
@@ -78,9 +96,10 @@ class Neighbours {
   void sort_columns(const Particles<Dim, Real>& particles);
   std::vector<std::int32_t> cluster_order(const Particles<Dim, Real>& particles, std::size_t& count);
   void find_boxes(const Particles<Dim, Real>& particles);
-  void list_runs();
-  void list_chunk(ClusterChunk& chunk, std::span<const Cell<Dim>> reach) const;
-  void append_runs(ClusterChunk& chunk, std::uint32_t cluster, const Cell<Dim>& column_offset) const;
+  void list_neighbours();
+  void number_shifts();
+  void list_chunk(ClusterChunk& chunk) const;
+  void append_column(ClusterChunk& chunk, std::uint32_t cluster, const Cell<Dim>& column_offset) const;
   void append_image(ClusterChunk& chunk, std::uint32_t cluster, std::size_t column, Cell<Dim> offset) const;
 
   NeighbourSettings settings_;
@@ -91,6 +110,7 @@ class Neighbours {
   std::vector<Cell<Dim>> cells_;             // of the clusters
   std::vector<std::uint32_t> column_begin_;  // first cluster of each column, and the end
   Boxes boxes_;
+  ShiftTable<Dim> shifts_;
   std::vector<ClusterChunk> chunks_;
 
   struct Entry {

@@ -1,10 +1,11 @@
 // The only neighbour loop. A physics term is a small functor that names the fields it reads and the fields it sums, and
-// adds its contribution for one pair; terms are fused at compile time into one pass over the cluster runs. Sums are
+// adds its contribution for one pair; terms are fused at compile time into one pass over the cluster pairs. Sums are
 // gathered onto i only: no races, the same bits for any number of threads.
 //
 //   struct Example {
 //     using Reads = FieldList<Velocity>;
 //     using Sums = FieldList<CompressionRate>;
+//     using Radial = FieldList<>;                            // those of Sums to which it adds along x_ij, if any
 //     bool on = true;                                        // the same for the whole pass; off adds nothing
 //     template <class Pair, class I, class J, class Out>
 //     void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
@@ -18,7 +19,9 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <tuple>
+#include <vector>
 
 #include "core/kernel.h"
 #include "core/neighbours.h"
@@ -79,39 +82,55 @@ struct Neighbour {
   }
 };
 
-/// What the terms add for one pair, sorted by the factor that it will be multiplied with.
-template <class Sums, int Dim, class L>
-struct Contributions {
-  Values<Sums, Dim, L> gradient, weight;  // × m W'/r, × m W
-  Values<Sums, Dim, L> radial;            // × m ∇W = m W'/r x; vectors only, component 0
+/// The fields to which a term adds along x_ij; a term without any need not say so.
+template <class Term>
+struct RadialOf {
+  using type = FieldList<>;
+};
+template <class Term>
+  requires requires { typename Term::Radial; }
+struct RadialOf<Term> {
+  using type = typename Term::Radial;
+};
+
+/// Where the terms add their contributions of one pair. What several terms add along x_ij is joined before it is
+/// multiplied.
+template <class Sums, class Radial, int Dim, class L>
+struct Out {
+  Values<Sums, Dim, L>& sums;
+  const ShapeAndSlope<L>& kernel;
+  Values<Radial, Dim, L> radial;  // component 0 only
 
   /// Adds m_j W'/r · v
   template <class F>
-  void gradW(F, const value_t<F, Dim, L>& v) { gradient[F{}] += v; }
+  void gradW(F, const value_t<F, Dim, L>& v) {
+    unrolled<components<F, Dim>>([&](auto k) { component(sums[F{}], k) += kernel.slope * component(v, k); });
+  }
   /// Adds m_j ∇W · s to a vector.
   template <class F>
-  void along(F, const L& s) { radial[F{}][0] += s; }
+  void along(F, const L& s) {
+    radial[F{}][0] += s;
+  }
   /// Adds m_j W · v
   template <class F>
-  void W(F, const value_t<F, Dim, L>& v) { weight[F{}] += v; }
+  void W(F, const value_t<F, Dim, L>& v) {
+    unrolled<components<F, Dim>>([&](auto k) { component(sums[F{}], k) += kernel.w * component(v, k); });
+  }
+
+  template <class... F>
+  void add_radial(FieldList<F...>, const Vec<Dim, L>& x) {
+    (add_radial(F{}, x), ...);
+  }
+  template <class F>
+  void add_radial(F, const Vec<Dim, L>& x) {
+    const L s = kernel.slope * radial[F{}][0];
+    unrolled<Dim>([&](auto d) { sums[F{}][d] += s * x[d]; });
+  }
 };
 
 template <class... F, int Dim, class L>
 void clear(Values<FieldList<F...>, Dim, L>& values) {
   (unrolled<components<F, Dim>>([&](auto k) { component(values[F{}], k) = L(0); }), ...);
-}
-
-template <class... F, int Dim, class L>
-void accumulate(Values<FieldList<F...>, Dim, L>& sums, const Contributions<FieldList<F...>, Dim, L>& c,
-                const Pair<Dim, L>& ij, const ShapeAndSlope<L>& kernel) {
-  const auto add = [&]<class G>(G) {
-    unrolled<components<G, Dim>>([&](auto k) {
-      L g = component(c.gradient[G{}], k);
-      if constexpr (G::shape == FieldShape::vector) g = g + c.radial[G{}][0] * ij.x[k];
-      component(sums[G{}], k) += kernel.slope * g + kernel.w * component(c.weight[G{}], k);
-    });
-  };
-  (add(F{}), ...);
 }
 
 }  // namespace pair_pass_detail
@@ -124,6 +143,7 @@ class PairPass {
   using L = Lanes<Real, N>;
   using Reads = typename UnionOf<FieldList<LocalPosition>, typename Terms::Reads...>::type;
   using Sums = typename UnionOf<typename Terms::Sums...>::type;
+  using Radial = typename UnionOf<typename pair_pass_detail::RadialOf<Terms>::type...>::type;
   static_assert(disjoint<Reads, Sums>, "a term reads what a term of the same pass sums: put them in different passes");
   static constexpr int I = N < cluster_size ? N : cluster_size, J = N / I;
   using Columns = pair_pass_detail::Columns<Reads, Dim, Real>;
@@ -131,7 +151,13 @@ class PairPass {
  public:
   PairPass(const Neighbours<Dim, Real>& neighbours, const Particles<Dim, Real>& particles, const KernelType& kernel,
            const Finish& finish, const Terms&... terms)
-      : neighbours_(neighbours), kernel_(kernel), finish_(finish), terms_(terms...), columns_(particles) {}
+      : neighbours_(neighbours), kernel_(kernel), finish_(finish), terms_(terms...), columns_(particles) {
+    const ShiftTable<Dim>& table = neighbours.shifts();
+    cluster_bits_ = table.cluster_bits;
+    cluster_mask_ = table.cluster(~ListEntry{0});
+    for (const auto& shift : table.shift)
+      for (int d = 0; d < Dim; ++d) shifts_.push_back(static_cast<Real>(shift[d]));
+  }
 
   void run() const {
     const auto chunks = neighbours_.chunks();
@@ -142,23 +168,24 @@ class PairPass {
   void run_chunk(const ClusterChunk& chunk, std::size_t number) const {
     auto finish = finish_.for_chunk(number);
     for (std::uint32_t c = chunk.begin; c < chunk.end; ++c) {
-      const ClusterRun* begin = chunk.runs.data() + chunk.run_begin[c - chunk.begin];
-      const ClusterRun* end = chunk.runs.data() + chunk.run_begin[c - chunk.begin + 1];
-      for (int i = 0; i < cluster_size; i += I) sum_up(std::size_t{c} * cluster_size + i, begin, end, finish);
+      for (int i = 0; i < cluster_size; i += I) sum_up(std::size_t{c} * cluster_size + i, chunk.of(c), finish);
     }
   }
 
   /// The sums of I particles from `slot` on.
   template <class ChunkFinish>
-  __attribute__((flatten, noinline)) void sum_up(std::size_t slot, const ClusterRun* begin, const ClusterRun* end, ChunkFinish& finish) const {
+  __attribute__((flatten, noinline)) void sum_up(std::size_t slot, std::span<const ListEntry> list,
+                                                 ChunkFinish& finish) const {
     const auto i = load_own(slot, Reads{});
     Values<Sums, Dim, L> sums;
     pair_pass_detail::clear(sums);
-    for (const ClusterRun* run = begin; run != end; ++run) {
-      Vec<Dim, L> x = i[local_position];
-      unrolled<Dim>([&](auto d) { x[d] = x[d] - L(static_cast<Real>(neighbours_.grid().shift(d, run->offset[d]))); });
-      const std::size_t last = (std::size_t{run->first} + run->count) * cluster_size;
-      for (std::size_t j = std::size_t{run->first} * cluster_size; j < last; j += J) add_pairs(i, x, j, sums);
+    const Real* const shifts = shifts_.data();
+    for (const ListEntry e : list) {
+      const Real* const shift = shifts + static_cast<std::size_t>(std::uint64_t{e} >> cluster_bits_) * Dim;
+      const std::size_t other = std::size_t{e & cluster_mask_} * cluster_size;
+      Vec<Dim, L> x;  // relative to the other's origin: exact, all are multiples of the grid's quantum
+      unrolled<Dim>([&](auto d) { x[d] = i[local_position][d] - L(shift[d]); });
+      for (int k = 0; k < cluster_size; k += J) add_pairs(i, x, other + k, sums);
     }
     hand_over(slot, sums, finish, Sums{});
   }
@@ -173,12 +200,10 @@ class PairPass {
     const L safe = max(ij.r2, L(std::numeric_limits<Real>::min() * Real(1e8)));  // a particle with itself: r = 0
     ij.r = safe * reciprocal_sqrt(safe);
     const ShapeAndSlope<L> kernel = kernel_(ij.r);
-    pair_pass_detail::Contributions<Sums, Dim, L> out;
-    pair_pass_detail::clear(out.gradient);
-    pair_pass_detail::clear(out.weight);
+    pair_pass_detail::Out<Sums, Radial, Dim, L> out{sums, kernel, {}};
     pair_pass_detail::clear(out.radial);
     std::apply([&](const Terms&... term) { (add_term(term, ij, i, j, out), ...); }, terms_);
-    pair_pass_detail::accumulate(sums, out, ij, kernel);
+    out.add_radial(Radial{}, ij.x);
   }
 
   template <class Term, class Own, class Other, class Out>
@@ -219,6 +244,9 @@ class PairPass {
   const Finish& finish_;
   std::tuple<Terms...> terms_;
   Columns columns_;
+  int cluster_bits_;
+  ListEntry cluster_mask_;
+  std::vector<Real> shifts_;  // Dim for each shift, m
 };
 
 /// Runs fused terms over all pairs on N lanes.

@@ -21,6 +21,8 @@ constexpr int most_responses = 8;  // to walls touched at once, before the veloc
 constexpr double skin_ratio = 1e-8;
 constexpr double skin_round_off = 1e-14;  // the least gap, relative to the largest coordinate
 
+constexpr double absurd = 1e150;  // m: a longer path, or one that is not a number, has diverged; its square overflows
+
 /// The walls that a particle touches at the same moment.
 template <int Dim> struct Touching {
   std::array<Point<Dim>, most_bounces> normal;
@@ -256,7 +258,8 @@ template <int Dim> double Contact<Dim>::Impl::settle(Point<Dim>& x) const {
 
 template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt) const {
   const Point<Dim> whole = dt * m.rate;
-  if (!whole.allFinite() || !near_wall(m.position, whole.norm())) {
+  const double reach = whole.norm();
+  if (!(reach < absurd) || !near_wall(m.position, reach)) {
     m.position += whole;
     return 0;
   }

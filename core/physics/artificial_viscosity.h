@@ -11,6 +11,7 @@ template <class Real>
 struct ArtificialViscosity {
   using Reads = FieldList<Velocity, Compression>;
   using Sums = FieldList<Acceleration>;
+  using Radial = FieldList<Acceleration>;
   bool on = false;
   Real strength = 0;   // 2 α c h / ρ0, m⁵/(kg s)
   Real softening = 0;  // 0.01 h², m²

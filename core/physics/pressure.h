@@ -11,6 +11,7 @@ namespace molten {
 struct PressureForce {
   using Reads = FieldList<PressureTerm>;
   using Sums = FieldList<Acceleration>;
+  using Radial = FieldList<Acceleration>;
   static constexpr bool on = true;
 
   template <class Pair, class I, class J, class Out>
