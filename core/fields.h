@@ -40,7 +40,7 @@ MOLTEN_FIELD(Id, IdScalar, id, "1", "number given at the start, kept for life; -
 MOLTEN_FIELD(Position, ExactVector, position, "m", "position");
 MOLTEN_FIELD(Velocity, VectorField, velocity, "m/s", "velocity at the time of the rates");
 MOLTEN_FIELD(Compression, ScalarField, compression, "1", "density / rest density - 1");
-MOLTEN_FIELD(Temperature, ExactScalar, temperature, "K or degC, as the scene has it", "temperature");
+MOLTEN_FIELD(Temperature, ExactScalar, temperature, "degrees", "temperature");
 
 // What an integrator carries beside it.
 MOLTEN_FIELD(HalfVelocity, VectorField, half_velocity, "m/s", "leap-frog velocity, half a step behind");

@@ -12,6 +12,9 @@
 
 namespace molten {
 
+/// The surface of any 3-D shape but a plane, placed; `must_close`: a mesh from a file must be closed.
+TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, bool must_close);
+
 /// The walls of a scene for the solver.
 template <int Dim>
 std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing);

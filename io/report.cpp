@@ -24,14 +24,6 @@ void write_json(const std::filesystem::path& file, const nlohmann::ordered_json&
   std::filesystem::rename(part, file);
 }
 
-std::string compiler() {
-#if defined(__clang__)
-  return std::string("clang ") + __clang_version__;
-#else
-  return std::string("g++ ") + __VERSION__;
-#endif
-}
-
 /// FNV-1a of a file's bytes.
 std::string hash_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -60,6 +52,14 @@ std::size_t peak_memory_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string compiler_name() {
+#if defined(__clang__)
+  return std::string("clang ") + __clang_version__;
+#else
+  return std::string("g++ ") + __VERSION__;
+#endif
 }
 
 std::string cpu_name() {
@@ -99,7 +99,7 @@ void write_manifest(const std::filesystem::path& folder, const Scene& scene, con
               {"version", MOLTEN_VERSION},
               {"commit", MOLTEN_COMMIT},
               {"build", MOLTEN_FLAGS},
-              {"compiler", compiler()},
+              {"compiler", compiler_name()},
               {"cpu", cpu_name()},
               {"threads", omp_get_max_threads()}});
 }

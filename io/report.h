@@ -33,5 +33,6 @@ std::string scene_file_of(const std::filesystem::path& folder);
 /// Peak resident memory of this process.
 std::size_t peak_memory_bytes();
 std::string cpu_name();
+std::string compiler_name();
 
 }  // namespace molten

@@ -1,6 +1,8 @@
 // Nothing gets through a wall: random tanks, terrains and thin walls, slow and up to thousands of radii a step.
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "core/boundary/contact.h"
 #include "tests/contact_shapes.h"
 
@@ -170,6 +172,28 @@ TEST(ContactStress, HoldsFarFromTheOrigin) {
     m.rate = m.velocity;
     contact.move(m, 1e-3);
     ASSERT_LT((m.position - far).lpNorm<Eigen::Infinity>(), 49 * r + 1e-6 * r);
+  }
+}
+
+TEST(ContactStress, TheThreadDoesNotMatter) {
+  Random<3> random(21);
+  const auto hills = terrain(8, [&](int, int) { return random.uniform(0, 1); }, {0.5, 0.9});
+  const Contact<3> contact({hills, plane<3>({0, 0, 4}, {0, 0, -1}, {0.5, 0.9})}, radius, 5 * radius);
+  std::vector<Motion<3>> a;
+  for (int i = 0; i < 500; ++i)
+    a.push_back({random.point(3) + Point<3>(4, 4, 2), 5 * random.point(), 5 * random.point()});
+  auto b = a;
+  const auto run = [&](std::vector<Motion<3>>& all, std::size_t from, std::size_t to) {
+    for (int step = 0; step < 20; ++step)
+      for (std::size_t i = from; i < to; ++i) contact.move(all[i], 0.05);
+  };
+  run(a, 0, a.size());
+  std::thread other([&] { run(b, 0, 200); });
+  run(b, 200, b.size());
+  other.join();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].position, b[i].position);
+    EXPECT_EQ(a[i].velocity, b[i].velocity);
   }
 }
 

@@ -259,7 +259,7 @@ template <int Dim> double Contact<Dim>::Impl::settle(Point<Dim>& x) const {
 template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt) const {
   const Point<Dim> whole = dt * m.rate;
   const double reach = whole.norm();
-  if (!(reach < absurd) || !near_wall(m.position, reach)) {
+  if (!(reach < absurd) || !m.position.allFinite() || !near_wall(m.position, reach)) {
     m.position += whole;
     return 0;
   }

@@ -21,7 +21,8 @@ T strain_magnitude(const SymTensor<Dim, T>& strain) {
 /// [P]'s dimensionless viscosity; D ≥ 0.
 inline double smd_viscosity(double strain, double jump_number, double flow_index) {
   if (strain <= 1e-30) return jump_number + 1;
-  return -std::expm1(-(jump_number + 1) * strain) * (std::pow(strain, flow_index - 1) + 1 / strain);
+  const double power = flow_index == 0.5 ? 1 / std::sqrt(strain) : std::pow(strain, flow_index - 1);  // [P]'s n is quick
+  return -std::expm1(-(jump_number + 1) * strain) * (power + 1 / strain);
 }
 
 struct Smd {
