@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/particle_pass.h"
+#include "core/simd.h"
 
 namespace molten {
 
@@ -15,6 +16,7 @@ namespace {
 constexpr std::uint32_t clusters_a_chunk = 128;
 constexpr int segment_columns = 4;       // a segment is about this many column widths long
 constexpr double longest_cluster = 4.0;  // spacings; a sparser cluster ends early, so that local positions stay small
+constexpr int boxes_at_once = 8;         // in the search for neighbours
 constexpr double far_away = 1e5;         // spacings; where padding slots sit
 
 /// Width of a column in spacings: a cluster of 4 then is about as long as it is wide.
@@ -217,18 +219,23 @@ std::vector<std::int32_t> Neighbours<Dim, Real>::cluster_order(const Particles<D
 
 template <int Dim, class Real>
 void Neighbours<Dim, Real>::find_boxes(const Particles<Dim, Real>& particles) {
-  for (int d = 0; d < Dim; ++d) boxes_.lower[d].resize(clusters()), boxes_.upper[d].resize(clusters());
+  constexpr float out_of_reach = std::numeric_limits<float>::max() / 4;
+  for (int d = 0; d < Dim; ++d) {
+    boxes_.lower[d].assign(clusters() + boxes_at_once, out_of_reach);
+    boxes_.upper[d].assign(clusters() + boxes_at_once, out_of_reach);
+  }
   const auto local = particles[local_position];
   for_each_slot(clusters(), [&](std::size_t c) {
     for (int d = 0; d < Dim; ++d) {
-      float lower = std::numeric_limits<float>::max(), upper = std::numeric_limits<float>::lowest();
+      Real lower = std::numeric_limits<Real>::max(), upper = std::numeric_limits<Real>::lowest();
       for (std::size_t s = c * cluster_size; s < (c + 1) * cluster_size; ++s) {
         if (particles.is_padding(s)) continue;
-        lower = std::min(lower, static_cast<float>(local[d][s]));
-        upper = std::max(upper, static_cast<float>(local[d][s]));
+        lower = std::min(lower, local[d][s]);
+        upper = std::max(upper, local[d][s]);
       }
-      boxes_.lower[d][c] = lower;
-      boxes_.upper[d][c] = upper;
+      const double origin = d == Grid<Dim>::along ? (cells_[c][d] + 0.5) * grid_.width[d] : 0;
+      boxes_.lower[d][c] = static_cast<float>(origin + lower);
+      boxes_.upper[d][c] = static_cast<float>(origin + upper);
     }
   });
 }
@@ -259,94 +266,130 @@ void Neighbours<Dim, Real>::number_shifts() {
   }
 }
 
+/// Lists the neighbours of a chunk's clusters. The clusters of a column look at the same columns around it, each with a
+/// cursor that only moves forward.
+template <int Dim, class Real>
+class Neighbours<Dim, Real>::Lister {
+ public:
+  explicit Lister(const Neighbours& neighbours)
+      : n_(neighbours),
+        // Boxes are floats: a little slack, so that rounding never loses a pair.
+        range_((n_.settings_.support_radius + n_.settings_.skin) * (1 + 1e-5) +
+               4e-7 * n_.grid_.cells[along] * n_.grid_.width[along]),
+        reach2_(static_cast<float>(range_ * range_)),
+        // Boxes follow one another along the column, after a restart up to half a skin out of order.
+        slack_(static_cast<float>(range_ + n_.settings_.skin)) {}
+
+  void list(ClusterChunk& chunk) {
+    found_.resize(std::size_t{chunk.end - chunk.begin} * 128);
+    count_ = 0;
+    chunk.entry_begin.assign(1, 0);
+    for (std::uint32_t c = chunk.begin; c < chunk.end; ++c) {
+      if (c == chunk.begin || n_.grid_.column(n_.cells_[c]) != n_.grid_.column(n_.cells_[c - 1])) look_around(n_.cells_[c]);
+      for (Target& target : targets_) list_column(c, target);
+      chunk.entry_begin.push_back(static_cast<std::uint32_t>(count_));
+    }
+    chunk.entries.assign(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(count_));
+  }
+
+ private:
+  static constexpr int along = Dim - 1;
+
+  /// A column around the present one, or a periodic image of it.
+  struct Target {
+    std::uint32_t cursor, end;      // clusters
+    std::array<float, Dim> shift;   // m; its origin as seen from here
+    std::int32_t number;            // of the shift to its segment 0
+  };
+
+  void look_around(const Cell<Dim>& cell) {
+    targets_.clear();
+    Cell<Dim> offset{};
+    const int far = Dim == 3 ? n_.shifts_.reach[1] : 0;
+    for (int b = -far; b <= far; ++b)
+      for (int a = -n_.shifts_.reach[0]; a <= n_.shifts_.reach[0]; ++a) {
+        offset[0] = a;
+        if constexpr (Dim == 3) offset[1] = b;
+        add_column(cell, offset);
+      }
+  }
+
+  void add_column(const Cell<Dim>& cell, Cell<Dim> offset) {
+    const Grid<Dim>& grid = n_.grid_;
+    Cell<Dim> column{};
+    for (int d = 0; d < along; ++d) {
+      column[d] = cell[d] + offset[d];
+      if (grid.periodic[d]) column[d] = ((column[d] % grid.cells[d]) + grid.cells[d]) % grid.cells[d];
+      else if (column[d] < 0 || column[d] >= grid.cells[d]) return;
+    }
+    const std::size_t number = grid.column(column);
+    const double length = grid.cells[along] * grid.width[along];
+    const int images = grid.periodic[along] ? 1 + static_cast<int>(slack_ / length) : 0;
+    for (int image = -images; image <= images; ++image) {
+      Target target{n_.column_begin_[number], n_.column_begin_[number + 1], {}, 0};
+      for (int d = 0; d < along; ++d) target.shift[d] = static_cast<float>(offset[d] * grid.width[d]);
+      target.shift[along] = static_cast<float>(image * length);
+      offset[along] = 0;
+      target.number = static_cast<std::int32_t>(n_.shifts_.number(offset)) + image * grid.cells[along];
+      targets_.push_back(target);
+    }
+  }
+
+  /// Appends the clusters of a column whose boxes come within range of the cluster's.
+  void list_column(std::uint32_t cluster, Target& target) {
+    const Boxes& boxes = n_.boxes_;
+    std::array<float, Dim> lower, upper;  // of the cluster, as seen from the column
+    for (int d = 0; d < Dim; ++d) {
+      lower[d] = boxes.lower[d][cluster] - target.shift[d];
+      upper[d] = boxes.upper[d][cluster] - target.shift[d];
+    }
+    const float* top = boxes.upper[along].data();
+    const float* bottom = boxes.lower[along].data();
+    // The clusters that follow here lie no lower than this one by more than the slack allows for.
+    while (target.cursor < target.end && top[target.cursor] < lower[along] - slack_) ++target.cursor;
+    const std::int32_t number = target.number - n_.cells_[cluster][along];
+    for (std::uint32_t first = target.cursor; first < target.end && bottom[first] <= upper[along] + slack_;
+         first += boxes_at_once)
+      append(first, std::min<std::uint32_t>(target.end - first, boxes_at_once), lower, upper, number);
+  }
+
+  /// Those of `count` boxes from `first` on that are within reach.
+  void append(std::uint32_t first, std::uint32_t count, const std::array<float, Dim>& lower,
+              const std::array<float, Dim>& upper, std::int32_t number) {
+    using L = Lanes<float, boxes_at_once>;
+    L distance2(0.f);
+    for (int d = 0; d < Dim; ++d) {
+      const L gap = max(L(0.f), max(load_8(n_.boxes_.lower[d].data() + first) - L(upper[d]),
+                                    L(lower[d]) - load_8(n_.boxes_.upper[d].data() + first)));
+      distance2 += gap * gap;
+    }
+    if (count_ + boxes_at_once > found_.size()) found_.resize(2 * found_.size());
+    for (unsigned hit = less_mask(distance2, L(reach2_)) & ((1u << count) - 1); hit; hit &= hit - 1) {
+      const std::uint32_t other = first + static_cast<std::uint32_t>(std::countr_zero(hit));
+      const auto shift = static_cast<std::uint32_t>(number + n_.cells_[other][along]);
+      found_[count_++] = shift << n_.shifts_.cluster_bits | other;
+    }
+  }
+
+  const Neighbours& n_;
+  double range_;  // m
+  float reach2_, slack_;
+  std::vector<Target> targets_;
+  std::vector<ListEntry> found_;  // of the chunk; count_ of them
+  std::size_t count_ = 0;
+};
+
 template <int Dim, class Real>
 void Neighbours<Dim, Real>::list_neighbours() {
   number_shifts();
   const std::size_t count = (clusters() + clusters_a_chunk - 1) / clusters_a_chunk;
   chunks_.resize(count);
-  for_each_piece(count, [&](std::size_t k) {
+  for_each_piece_with(count, Lister(*this), [&](std::size_t k, Lister& lister) {
     ClusterChunk& chunk = chunks_[k];
     chunk.begin = static_cast<std::uint32_t>(k * clusters_a_chunk);
     chunk.end = static_cast<std::uint32_t>(std::min<std::size_t>(clusters(), (k + 1) * clusters_a_chunk));
-    list_chunk(chunk);
+    lister.list(chunk);
   });
-}
-
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::list_chunk(ClusterChunk& chunk) const {
-  chunk.entries.clear();
-  chunk.entry_begin.clear();
-  for (std::uint32_t c = chunk.begin; c < chunk.end; ++c) {
-    chunk.entry_begin.push_back(static_cast<std::uint32_t>(chunk.entries.size()));
-    Cell<Dim> offset{};
-    const int far = Dim == 3 ? shifts_.reach[1] : 0;
-    for (int b = -far; b <= far; ++b)
-      for (int a = -shifts_.reach[0]; a <= shifts_.reach[0]; ++a) {
-        offset[0] = a;
-        if constexpr (Dim == 3) offset[1] = b;
-        append_column(chunk, c, offset);
-      }
-  }
-  chunk.entry_begin.push_back(static_cast<std::uint32_t>(chunk.entries.size()));
-}
-
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::append_column(ClusterChunk& chunk, std::uint32_t cluster, const Cell<Dim>& offset) const {
-  Cell<Dim> column{};
-  for (int d = 0; d < Grid<Dim>::along; ++d) {
-    column[d] = cells_[cluster][d] + offset[d];
-    if (grid_.periodic[d]) column[d] = ((column[d] % grid_.cells[d]) + grid_.cells[d]) % grid_.cells[d];
-    else if (column[d] < 0 || column[d] >= grid_.cells[d]) return;
-  }
-  const std::size_t number = grid_.column(column);
-  if (!grid_.periodic[Dim - 1]) return append_image(chunk, cluster, number, offset);
-  const double range = settings_.support_radius + 2 * settings_.skin;
-  const int images = 1 + static_cast<int>(range / (grid_.cells[Dim - 1] * grid_.width[Dim - 1]));
-  for (int image = -images; image <= images; ++image) {
-    Cell<Dim> o = offset;
-    o[Dim - 1] = image * grid_.cells[Dim - 1];
-    append_image(chunk, cluster, number, o);
-  }
-}
-
-/// The clusters of one column (moved by offset[along] segments) whose boxes come within range of the cluster's.
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::append_image(ClusterChunk& chunk, std::uint32_t cluster, std::size_t column,
-                                         Cell<Dim> offset) const {
-  constexpr int along = Dim - 1;
-  // float boxes: a little slack so that rounding never loses a pair
-  const float range = static_cast<float>((settings_.support_radius + settings_.skin) * (1 + 1e-6) + 1e-5 * settings_.spacing);
-  const std::int32_t segment = cells_[cluster][along];
-  const auto gap = [&](int d, std::uint32_t other, float shift) {
-    return std::max(0.f, std::max(boxes_.lower[d][other] + shift - boxes_.upper[d][cluster],
-                                  boxes_.lower[d][cluster] - boxes_.upper[d][other] - shift));
-  };
-  const auto along_shift = [&](std::uint32_t other) {
-    return static_cast<float>((cells_[other][along] + offset[along] - segment) * grid_.width[along]);
-  };
-  std::array<float, Dim> across{};
-  for (int d = 0; d < along; ++d) across[d] = static_cast<float>(offset[d] * grid_.width[d]);
-
-  const std::uint32_t end = column_begin_[column + 1];
-  // Boxes follow one another along the column (up to half a skin each after a restart), so the first in reach is found
-  // by bisection.
-  std::uint32_t first = column_begin_[column];
-  for (std::uint32_t count = end - first; count > 0;) {
-    const std::uint32_t half = count / 2;
-    const float top = boxes_.upper[along][first + half] + along_shift(first + half);
-    if (top < boxes_.lower[along][cluster] - range - static_cast<float>(settings_.skin)) first += half + 1, count -= half + 1;
-    else count = half;
-  }
-  for (std::uint32_t other = first; other < end; ++other) {
-    const float shift = along_shift(other);
-    if (boxes_.lower[along][other] + shift > boxes_.upper[along][cluster] + range + static_cast<float>(settings_.skin)) break;
-    float distance2 = gap(along, other, shift) * gap(along, other, shift);
-    for (int d = 0; d < along; ++d) distance2 += gap(d, other, across[d]) * gap(d, other, across[d]);
-    if (distance2 > range * range) continue;
-    Cell<Dim> cells = offset;
-    cells[along] += cells_[other][along] - segment;
-    chunk.entries.push_back(shifts_.number(cells) << shifts_.cluster_bits | other);
-  }
 }
 
 template <int Dim, class Real>

@@ -87,9 +87,12 @@ class Neighbours {
   void relist(Particles<Dim, Real>& particles);
 
  private:
+  /// Bounding boxes of the clusters (m): across relative to the column's origin, along from the grid's lower end. Some
+  /// boxes out of reach follow the last, for loops that take several at once.
   struct Boxes {
-    std::vector<float> lower[Dim], upper[Dim];  // of the clusters, relative to their origins (m)
+    std::vector<float> lower[Dim], upper[Dim];
   };
+  class Lister;
   void choose_grid(const Particles<Dim, Real>& particles);
   void choose_quantum();
   void sort(Particles<Dim, Real>& particles);
@@ -98,10 +101,6 @@ class Neighbours {
   void find_boxes(const Particles<Dim, Real>& particles);
   void list_neighbours();
   void number_shifts();
-  void list_chunk(ClusterChunk& chunk) const;
-  void append_column(ClusterChunk& chunk, std::uint32_t cluster, const Cell<Dim>& column_offset) const;
-  void append_image(ClusterChunk& chunk, std::uint32_t cluster, std::size_t column, Cell<Dim> offset) const;
-
   NeighbourSettings settings_;
   Domain<Dim> domain_;
   Grid<Dim> grid_;

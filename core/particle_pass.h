@@ -23,6 +23,17 @@ void for_each_piece(std::size_t count, F&& f) {
   for (std::size_t k = 0; k < count; ++k) f(k);
 }
 
+/// The same with scratch of its own for each thread: f(k, scratch&). What f gives must not depend on what was there.
+template <class Scratch, class F>
+void for_each_piece_with(std::size_t count, const Scratch& scratch, F&& f) {
+#pragma omp parallel
+  {
+    Scratch own = scratch;
+#pragma omp for schedule(dynamic, 1)
+    for (std::size_t k = 0; k < count; ++k) f(k, own);
+  }
+}
+
 /// Folds f(slot, accumulator&) over blocks of slots in parallel, then joins the blocks' accumulators in order with
 /// join(total&, block).
 template <class T, class F, class Join>

@@ -85,6 +85,14 @@ inline Lanes<Real, N> select_less(Lanes<Real, N> a, Lanes<Real, N> b, Lanes<Real
   return a.v < b.v ? x.v : y.v;
 }
 
+/// Bit k is set where a < b in lane k.
+inline unsigned less_mask(Lanes<float, 8> a, Lanes<float, 8> b) {
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps((__m256)a.v, (__m256)b.v, _CMP_LT_OQ)));
+}
+
+/// 8 consecutive numbers from memory.
+inline Lanes<float, 8> load_8(const float* p) { return Lanes<float, 8>((Lanes<float, 8>::Native)_mm256_loadu_ps(p)); }
+
 template <class Real, int N>
 inline Lanes<Real, N> max(Lanes<Real, N> a, Lanes<Real, N> b) {
   using V [[maybe_unused]] = decltype(a.v);

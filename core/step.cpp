@@ -79,9 +79,9 @@ void choose_time_step(State<Dim, Real>& s) {
       limit(p.courant_conduction * h * h / (2 * conduction_constant * p.diffusivity), Limit::conduction);
     }
   }
-  // Land on the stop; two halves rather than a step and a sliver.
+  // Land on the stop; two halves rather than a step and a sliver. (The round-off of summed steps is no sliver.)
   const double left = clock.stop - clock.time;
-  if (clock.dt >= left) limit(left, Limit::output), clock.limit = Limit::output;
+  if (clock.dt >= left * (1 - 1e-9)) clock.dt = left, clock.limit = Limit::output;
   else if (2 * clock.dt > left) limit(left / 2, Limit::output);
 }
 
