@@ -61,6 +61,15 @@ std::vector<std::string> available_fields(const Features& f) {
   return names;
 }
 
+void require_fields(const Features& features, const std::vector<std::string>& names) {
+  const std::vector<std::string> available = available_fields(features);
+  for (const std::string& name : names)
+    if (std::find(available.begin(), available.end(), name) == available.end())
+      throw Error(ExitCode::usage, "output.fields: this scene has no field '" + name + "'; it has " +
+                                       std::accumulate(available.begin() + 1, available.end(), available[0],
+                                                       [](auto a, auto& b) { return a + ", " + b; }));
+}
+
 namespace {
 
 /// The slots of the particles in id order.
@@ -101,7 +110,6 @@ SnapshotField read_field(const State<Dim, Real>& s, const std::string& name, std
 
 template <int Dim, class Real>
 Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>& fields) {
-  const std::vector<std::string> available = available_fields(s.features);
   Snapshot shot;
   shot.time = s.clock.time;
   shot.step = s.clock.step;
@@ -112,13 +120,8 @@ Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>
     shot.id.push_back(s.particles[id][0][slot]);
     for (int d = 0; d < 3; ++d) shot.position.push_back(d < Dim ? s.particles[position][d][slot] : 0.0);
   }
-  for (const std::string& name : fields.empty() ? available : fields) {
-    if (std::find(available.begin(), available.end(), name) == available.end())
-      throw Error(ExitCode::usage, "output.fields: this scene has no field '" + name + "'; it has " +
-                                       std::accumulate(available.begin() + 1, available.end(), available[0],
-                                                       [](auto a, auto& b) { return a + ", " + b; }));
+  for (const std::string& name : fields.empty() ? available_fields(s.features) : fields)
     shot.fields.push_back(read_field(s, name, std::span<const std::uint32_t>(slots)));
-  }
   return shot;
 }
 

@@ -25,13 +25,14 @@ struct Diagnostics {
 template <int Dim, class Real>
 Diagnostics diagnose(const State<Dim, Real>& s);
 
-/// All particles in id order with the named fields (empty: all that the run has). Throws Error(usage) for a name that is
-/// none of `available_fields`.
+/// All particles in id order with the named fields (empty: all that the run has).
 template <int Dim, class Real>
 Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>& fields);
 
 /// Names of what a snapshot of this run can hold.
 std::vector<std::string> available_fields(const Features& features);
+/// Throws Error(usage) for a name that is none of them.
+void require_fields(const Features& features, const std::vector<std::string>& names);
 
 /// Directed pairs within the support, self excluded.
 template <int Dim, class Real>

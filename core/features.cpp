@@ -40,9 +40,9 @@ Features features_of(const Scene& scene) {
 
 FieldSet Features::columns() const {
   FieldSet s = field_set(FieldList<Id, Position, LocalPosition, Velocity, Compression, PressureTerm, Acceleration,
-                                   CompressionRate>{});
+                                   CompressionRate, PreviousCompressionRate>{});
   if (integrator == IntegratorKind::leap_frog) s |= field_set(FieldList<HalfVelocity, HalfCompression>{});
-  if (integrator == IntegratorKind::symplectic_euler) s |= field_set(FieldList<PreviousCompressionRate>{});
+  if (integrator == IntegratorKind::symplectic_euler) s |= field_set(FieldList<OlderCompressionRate>{});
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
   if (stress) s |= field_set(FieldList<Viscosity, Stress>{});
   if (xsph) s |= field_set(FieldList<XsphVelocity>{});

@@ -46,6 +46,7 @@ MOLTEN_FIELD(Temperature, ExactScalar, temperature, "degrees", "temperature");
 MOLTEN_FIELD(HalfVelocity, VectorField, half_velocity, "m/s", "leap-frog velocity, half a step behind");
 MOLTEN_FIELD(HalfCompression, ScalarField, half_compression, "1", "leap-frog compression, half a step behind");
 MOLTEN_FIELD(PreviousCompressionRate, ScalarField, previous_compression_rate, "1/s", "compression rate one step ago");
+MOLTEN_FIELD(OlderCompressionRate, ScalarField, older_compression_rate, "1/s", "compression rate two steps ago");
 
 // What the passes compute for each other, from the above.
 MOLTEN_FIELD(LocalPosition, VectorField, local_position, "m", "position relative to the cluster's origin, on the grid's quantum");
@@ -71,7 +72,7 @@ struct FieldList {
 
 /// All fields that can be columns, in the order of files.
 using AllFields = FieldList<Id, Position, Velocity, Compression, Temperature, HalfVelocity, HalfCompression,
-                            PreviousCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress,
+                            PreviousCompressionRate, OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress,
                             Acceleration, CompressionRate, TemperatureRate, XsphVelocity>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------

@@ -124,7 +124,8 @@ void Filler::refuse_overlap(std::size_t part, const Lattice& lattice, double x, 
   std::vector<Span> spans;
   for (std::size_t other = 0; other < part; ++other) {
     const Eigen::AlignedBox3d& box = parts_[other].bounds;
-    if (x < box.min().x() || x > box.max().x() || y < box.min().y() || y > box.max().y()) continue;
+    if (x < box.min().x() || x > box.max().x()) continue;
+    if (dimensions_ == 3 && (y < box.min().y() || y > box.max().y())) continue;
     parts_[other].inside->spans(x, y, spans);
     for (const Span& span : spans) {
       const int axis = dimensions_ - 1;

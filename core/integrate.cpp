@@ -1,9 +1,10 @@
 // The particle pass of a step: time integration and contact with walls.
 //
-// Leap-frog ([P] 6.4.3, physics: Monaghan): v^{n+1/2} = v^{n-1/2} + dt a^n, x += dt v^{n+1/2}; the passes need v and ρ at the
-// full step, v^{n+1} ≈ v^{n+1/2} + ½ dt a^n. v^{-1/2} = v^0 − ½ dt a^0 follows from a first half step of ½ dt.
+// Leap-frog ([P] 6.4.3): v^{n+1/2} = v^{n-1/2} + dt a^n, x += dt v^{n+1/2}; v^{-1/2} = v^0 − ½ dt a^0 follows from a first half
+// step. The passes need v and ρ at the full step, before the rates there are known: v^{n+1} ≈ v^{n+1/2} + ½ dt a^n, and for ρ
+// the rate extrapolated half a step. (With ρ'^n alone a sound wave grows by (ω dt)⁴/4 a step.)
 // Symplectic Euler: v^{n+1} = v^n + dt a^n, x += dt v^{n+1}; the density follows the positions, so its rate is extrapolated
-// to the velocity that moved them: 2 ρ'^n − ρ'^{n−1}. (With ρ'^n alone sound waves would grow as in explicit Euler.)
+// to the velocity that moved them, ρ'^n + (1+β)(ρ'^n − ρ'^{n−1}) − β(ρ'^{n−1} − ρ'^{n−2}), which is stable for 0.6 ≤ β ≤ 1.
 #include <cmath>
 
 #include "core/particle_pass.h"
@@ -21,7 +22,7 @@ class Integrator {
         p_(s.particles),
         dt_(s.clock.dt),
         kick_(s.features.integrator == IntegratorKind::leap_frog ? (previous_dt + dt_) / 2 : dt_),
-        first_(s.clock.step == 0),
+        stretch_(previous_dt > 0 ? dt_ / previous_dt : 0),
         always_collide_(s.features.contact && longest_way() > s.parameters.spacing) {}
 
   /// Moves one particle; returns the square of its displacement (m²).
@@ -78,21 +79,25 @@ class Integrator {
 
   void advance_compression(std::size_t slot) const {
     const double rate = compression_rate_[slot];
+    const double rise = stretch_ * (rate - previous_rate_[slot]);  // of the rate, from this step to the next
     if (s_.features.integrator == IntegratorKind::leap_frog) {
       const double half = half_compression_[slot] + kick_ * rate;
       half_compression_[slot] = static_cast<Real>(half);
-      compression_[slot] = static_cast<Real>(half + dt_ / 2 * rate);
+      compression_[slot] = static_cast<Real>(half + dt_ / 2 * (rate + rise));
     } else {
-      const double before = first_ ? rate : double(previous_rate_[slot]);
-      compression_[slot] = static_cast<Real>(compression_[slot] + dt_ * (2 * rate - before));
-      previous_rate_[slot] = static_cast<Real>(rate);
+      constexpr double beta = 0.8;
+      const double earlier_rise = s_.clock.step > 1 ? double(previous_rate_[slot]) - older_rate_[slot] : rise;
+      compression_[slot] = static_cast<Real>(compression_[slot] + dt_ * (rate + (1 + beta) * rise - beta * earlier_rise));
+      older_rate_[slot] = previous_rate_[slot];
     }
+    previous_rate_[slot] = static_cast<Real>(rate);
   }
 
   State<Dim, Real>& s_;
   Particles<Dim, Real>& p_;
   double dt_, kick_;
-  bool first_, always_collide_;
+  double stretch_;  // dt over the one before; 0 at the first step
+  bool always_collide_;
   const std::int64_t* ids_ = p_[id][0];
   Column<Position, Dim, double> position_ = p_[position];
   Column<Velocity, Dim, Real> velocity_ = p_[velocity];
@@ -102,6 +107,7 @@ class Integrator {
   Real* compression_ = p_[compression][0];
   Real* half_compression_ = p_[half_compression][0];
   Real* previous_rate_ = p_[previous_compression_rate][0];
+  Real* older_rate_ = p_[older_compression_rate][0];
   const Real* compression_rate_ = p_[compression_rate][0];
   double* temperature_ = p_[temperature][0];
   const Real* temperature_rate_ = p_[temperature_rate][0];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <type_traits>
 
@@ -38,17 +39,21 @@ constexpr double kernel_constant(KernelKind kind, int dim) {
   return 0;
 }
 
-/// A kernel's shape w(q) and slope w'(q)/q at q = r/h, zero at and beyond the support.
+/// A kernel's shape w(q) and slope w'(q)/q at q = r/h, zero at and beyond the support; each up to a constant factor that
+/// the kernel multiplies in once (slope_factor).
 template <class T>
 struct ShapeAndSlope {
   T w, slope;
 };
 
+/// What the slopes below are to be multiplied with.
+constexpr double slope_factor(KernelKind kind) { return kind == KernelKind::wendland_c2 ? -5 : 1; }
+
 template <class T>
 ShapeAndSlope<T> wendland_shape(T q) {
   const T t = max(T(1) - T(0.5) * q, T(0));
   const T t3 = t * t * t;
-  return {t3 * t * (T(2) * q + T(1)), T(-5) * t3};
+  return {t3 * t * (T(2) * q + T(1)), t3};
 }
 
 template <class T>
@@ -98,16 +103,25 @@ class Kernel {
       : kind_(kind),
         inverse_h_(Real(1 / smoothing_length)),
         w_(Real(weight * kernel_constant(kind, dim) / std::pow(smoothing_length, dim))),
-        slope_(Real(weight * kernel_constant(kind, dim) / std::pow(smoothing_length, dim + 2))) {}
+        slope_(Real(weight * kernel_constant(kind, dim) * slope_factor(kind) / std::pow(smoothing_length, dim + 2))) {}
 
+  /// At the distance r (m).
   template <class T>
   ShapeAndSlope<T> operator()(T r) const {
-    const T q = r * T(inverse_h_);
-    const ShapeAndSlope<T> s = shape(q);
-    return {T(w_) * s.w, T(slope_) * s.slope};
+    return at(r * T(inverse_h_));
+  }
+  /// At the square of the distance (m²); a particle with itself has r = 0.
+  template <int N>
+  ShapeAndSlope<Lanes<Real, N>> at_square(Lanes<Real, N> r2) const {
+    return at(scaled_sqrt(max(r2, Lanes<Real, N>(std::numeric_limits<Real>::min() * Real(1e8))), inverse_h_));
   }
 
  private:
+  template <class T>
+  ShapeAndSlope<T> at(T q) const {
+    const ShapeAndSlope<T> s = shape(q);
+    return {T(w_) * s.w, T(slope_) * s.slope};
+  }
   template <class T>
   ShapeAndSlope<T> shape(T q) const {
     if constexpr (choice == KernelChoice::wendland_c2) return wendland_shape(q);

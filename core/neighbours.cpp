@@ -88,7 +88,7 @@ void Neighbours<Dim, Real>::choose_grid(const Particles<Dim, Real>& particles) {
     }
   }
   // A few particles thrown far must not make the table of columns larger than the particles: wider columns then.
-  const double most_columns = 4096 + 4.0 * static_cast<double>(particles.count());
+  const double most_columns = 65536 + 8.0 * static_cast<double>(particles.count());
   while (static_cast<double>(grid_.columns()) > most_columns) {
     bool widened = false;
     for (int d = 0; d < Grid<Dim>::along; ++d) {
@@ -240,10 +240,18 @@ void Neighbours<Dim, Real>::find_boxes(const Particles<Dim, Real>& particles) {
   });
 }
 
+/// Clusters whose boxes are within this are neighbours (m): the support and the skin, and a little slack, since boxes are
+/// floats and rounding must never lose a pair.
+template <int Dim, class Real>
+double Neighbours<Dim, Real>::list_range() const {
+  constexpr int along = Grid<Dim>::along;
+  return (settings_.support_radius + settings_.skin) * (1 + 1e-5) + 4e-7 * grid_.cells[along] * grid_.width[along];
+}
+
 template <int Dim, class Real>
 void Neighbours<Dim, Real>::number_shifts() {
   // When relisting, particles may have left their cell by half a skin each.
-  const double range = settings_.support_radius + 2 * settings_.skin;
+  const double range = list_range() + settings_.skin;
   std::size_t count = 1;
   for (int d = 0; d < Dim; ++d) {
     shifts_.reach[d] = static_cast<int>(std::ceil((range + (d == Grid<Dim>::along ? longest_cluster * settings_.spacing : 0)) /
@@ -273,9 +281,7 @@ class Neighbours<Dim, Real>::Lister {
  public:
   explicit Lister(const Neighbours& neighbours)
       : n_(neighbours),
-        // Boxes are floats: a little slack, so that rounding never loses a pair.
-        range_((n_.settings_.support_radius + n_.settings_.skin) * (1 + 1e-5) +
-               4e-7 * n_.grid_.cells[along] * n_.grid_.width[along]),
+        range_(n_.list_range()),
         reach2_(static_cast<float>(range_ * range_)),
         // Boxes follow one another along the column, after a restart up to half a skin out of order.
         slack_(static_cast<float>(range_ + n_.settings_.skin)) {}

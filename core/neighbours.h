@@ -101,6 +101,7 @@ class Neighbours {
   void find_boxes(const Particles<Dim, Real>& particles);
   void list_neighbours();
   void number_shifts();
+  double list_range() const;
   NeighbourSettings settings_;
   Domain<Dim> domain_;
   Grid<Dim> grid_;

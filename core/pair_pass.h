@@ -18,7 +18,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -36,7 +35,6 @@ template <int Dim, class L>
 struct Pair {
   Vec<Dim, L> x;  // x_i − x_j, m
   L r2;           // |x|², m²
-  L r;            // |x|, m
 };
 
 /// One value for each field of a list.
@@ -144,7 +142,6 @@ class PairPass {
   using Reads = typename UnionOf<FieldList<LocalPosition>, typename Terms::Reads...>::type;
   using Sums = typename UnionOf<typename Terms::Sums...>::type;
   using Radial = typename UnionOf<typename pair_pass_detail::RadialOf<Terms>::type...>::type;
-  static_assert(disjoint<Reads, Sums>, "a term reads what a term of the same pass sums: put them in different passes");
   static constexpr int I = N < cluster_size ? N : cluster_size, J = N / I;
   using Columns = pair_pass_detail::Columns<Reads, Dim, Real>;
 
@@ -197,9 +194,7 @@ class PairPass {
     Pair<Dim, L> ij;
     ij.x = x - j[local_position];
     ij.r2 = dot(ij.x, ij.x);
-    const L safe = max(ij.r2, L(std::numeric_limits<Real>::min() * Real(1e8)));  // a particle with itself: r = 0
-    ij.r = safe * reciprocal_sqrt(safe);
-    const ShapeAndSlope<L> kernel = kernel_(ij.r);
+    const ShapeAndSlope<L> kernel = kernel_.at_square(ij.r2);
     pair_pass_detail::Out<Sums, Radial, Dim, L> out{sums, kernel, {}};
     pair_pass_detail::clear(out.radial);
     std::apply([&](const Terms&... term) { (add_term(term, ij, i, j, out), ...); }, terms_);
@@ -249,8 +244,13 @@ class PairPass {
   std::vector<Real> shifts_;  // Dim for each shift, m
 };
 
+/// A term must not read what a term of the same pass sums: such terms belong in different passes.
+template <class... Terms>
+concept Fusable = disjoint<typename UnionOf<typename Terms::Reads...>::type, typename UnionOf<typename Terms::Sums...>::type>;
+
 /// Runs fused terms over all pairs on N lanes.
 template <int N, int Dim, class Real, class KernelType, class Finish, class... Terms>
+  requires Fusable<Terms...>
 void pair_pass(const Neighbours<Dim, Real>& neighbours, const Particles<Dim, Real>& particles, const KernelType& kernel,
                const Finish& finish, const Terms&... terms) {
   PairPass<N, Dim, Real, KernelType, Finish, Terms...>(neighbours, particles, kernel, finish, terms...).run();

@@ -1,4 +1,5 @@
 // The two pair passes of a step: which terms they fuse, and what becomes of the sums.
+#include <cmath>
 #include <vector>
 
 #include "core/pair_pass.h"
@@ -77,6 +78,7 @@ struct RatesFinish {
       extremes.speed2 = std::max(extremes.speed2, v2);
       extremes.xsph2 = std::max(extremes.xsph2, x2);
       extremes.finite &= a2 < 1e60 && v2 < 1e60;  // false for NaN
+      if (s.features.heat) extremes.finite &= std::abs(temperature_rates[slot]) < 1e30;
       if (s.features.stress) {
         const double density = s.parameters.eos.rest_density * (1 + compressions[slot]);
         extremes.kinematic_viscosity = std::max(extremes.kinematic_viscosity, viscosities[slot] / density);

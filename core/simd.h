@@ -134,30 +134,28 @@ inline Lanes<Real, N> reciprocal(Lanes<Real, N> a) {
   }
 }
 
-/// √a and 1/√a for a > 0, to the same precision.
+/// scale · √a for a > 0, to the same precision: with e ≈ 1/√a and s = a e, one Newton step is √a ≈ s (3 − s e)/2.
 template <class Real, int N>
-inline Lanes<Real, N> reciprocal_sqrt(Lanes<Real, N> a) {
+inline Lanes<Real, N> scaled_sqrt(Lanes<Real, N> a, Real scale) {
   using L = Lanes<Real, N>;
-  if constexpr (N == 1) return Real(1) / std::sqrt(a.v);
-#if defined(__AVX512F__)
-  else if constexpr (sizeof(L) == 64 && sizeof(Real) == 4) {
-    const L e{(typename L::Native)_mm512_maskz_rsqrt14_ps(0xffff, (__m512)a.v)};
-    return e * (L(Real(1.5)) - L(Real(0.5)) * a * e * e);
-  } else if constexpr (sizeof(L) == 64 && sizeof(Real) == 8) {
-    L e{(typename L::Native)_mm512_maskz_rsqrt14_pd(0xff, (__m512d)a.v)};
-    e = e * (L(1.5) - L(0.5) * a * e * e);
-    return e * (L(1.5) - L(0.5) * a * e * e);
-  }
-#endif
-  else if constexpr (sizeof(L) == 32 && sizeof(Real) == 4) {
-    const L e{(typename L::Native)_mm256_rsqrt_ps((__m256)a.v)};
-    return e * (L(Real(1.5)) - L(Real(0.5)) * a * e * e);
-  } else if constexpr (sizeof(L) == 32 && sizeof(Real) == 8) {
-    return L(1.0) / L{(typename L::Native)_mm256_sqrt_pd((__m256d)a.v)};
-  } else {
+  if constexpr (N == 1) return scale * std::sqrt(a.v);
+  else if constexpr (sizeof(Real) == 4) {
     L e;
-    for (int k = 0; k < N; ++k) e.v[k] = Real(1) / std::sqrt(a.v[k]);
-    return e;
+#if defined(__AVX512F__)
+    if constexpr (N == 16) e.v = (typename L::Native)_mm512_maskz_rsqrt14_ps(0xffff, (__m512)a.v);
+    else
+#endif
+      e.v = (typename L::Native)_mm256_rsqrt_ps((__m256)a.v);
+    const L s = a * e;
+    return s * (L(Real(1.5) * scale) - L(Real(0.5) * scale) * (s * e));
+  } else {
+    L root;
+#if defined(__AVX512F__)
+    if constexpr (N == 8) root.v = (typename L::Native)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v);
+    else
+#endif
+      root.v = (typename L::Native)_mm256_sqrt_pd((__m256d)a.v);
+    return L(scale) * root;
   }
 }
 

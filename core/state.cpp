@@ -30,10 +30,8 @@ void State<Dim, Real>::archive(Archive& a) {
   clock.limit = static_cast<Limit>(limit);
   particles.archive(a);
   neighbours.archive(a);
-  if (a.loading()) {
-    neighbours.relist(particles);
-    mark_near_wall(*this);
-  }
+  a.vector("neighbours/near_wall", near_wall);  // as of the last sort: where the particles are now tells otherwise
+  if (a.loading()) neighbours.relist(particles);
 }
 
 template <int Dim, class Real>

@@ -64,6 +64,7 @@ void print_run(const Scene& scene, const Features& features, const Start& start)
 
 ExitCode check_scene(const Scene& scene) {
   const Features features = features_of(scene);
+  require_fields(features, scene.output.fields);
   for (const Body& body : scene.fluid.bodies) print_mesh(scene, body.shape);
   for (const Boundary& boundary : scene.boundaries) print_mesh(scene, boundary.shape);
   const Start start = fill_bodies(scene, features);

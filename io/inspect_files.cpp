@@ -46,6 +46,8 @@ void print_run_folder(const fs::path& folder) {
     if (in) fmt::print("{}:\n{}", name, std::string(std::istreambuf_iterator<char>(in), {}));
   }
   for (const fs::path& file : list_checkpoints(folder)) print_checkpoint(file);
+  const bool holds_run = fs::exists(folder / "manifest.json");  // which may well write no frames
+  if (holds_run && (!fs::exists(folder / "frames") || fs::is_empty(folder / "frames"))) return fmt::print("no frames\n");
   const auto frames = list_frames(folder);
   fmt::print("{} frames\n", frames.size());
   print_frame(frames.back().file);

@@ -27,7 +27,7 @@ void add_run(CLI::App& app, Commands& c) {
   CLI::App* run = app.add_subcommand("run", "Run a scene\n  molten run scenes/bunny.toml -o runs/bunny --set run.end_time=0.1");
   run->add_option("scene", c.scene, "Scene file (TOML; docs/scenes.md)")->required();
   run->add_option("-o,--output", c.run.folder, "Folder of the run (default: runs/<name of the scene>)");
-  run->add_option("--threads", c.run.threads, "Threads (default: OMP_NUM_THREADS or all cores)")->check(CLI::PositiveNumber);
+  run->add_option("--threads", c.run.threads, "Threads (default: OMP_NUM_THREADS or all cores)")->check(CLI::Range(1, 4096));
   run->add_option("--set", c.overrides, "Override a key of the scene: key=value")->allow_extra_args(false);
   run->add_flag("--overwrite", c.run.overwrite, "Replace a run that the folder already holds");
   run->callback([&] {
@@ -41,7 +41,7 @@ void add_run(CLI::App& app, Commands& c) {
 void add_resume(CLI::App& app, Commands& c) {
   CLI::App* resume = app.add_subcommand("resume", "Go on from a run's newest checkpoint\n  molten resume runs/bunny --set run.end_time=0.8");
   resume->add_option("run", c.resume.folder, "Folder of the run")->required();
-  resume->add_option("--threads", c.resume.threads, "Threads")->check(CLI::PositiveNumber);
+  resume->add_option("--threads", c.resume.threads, "Threads")->check(CLI::Range(1, 4096));
   resume->add_option("--set", c.resume.overrides, "Override a key of [run] or [output]: key=value")->allow_extra_args(false);
   resume->add_flag("--force", c.resume.force, "Go on although the scene, a mesh or the numerics changed");
   resume->callback([&] { c.chosen = [&] { return resume_run(c.resume); }; });
@@ -101,12 +101,20 @@ int guarded(const std::function<ExitCode()>& f) {
   }
 }
 
+/// What is wrong with the command line, in one line.
+std::string complaint(const CLI::App* app, const CLI::Error& e) {
+  const auto subcommands = app->get_subcommands();
+  return fmt::format("molten: {}; see molten{}{} --help\n", e.what(), subcommands.empty() ? "" : " ",
+                     subcommands.empty() ? "" : subcommands.front()->get_name());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"molten: melting bodies, lava and dam breaks with smoothed particle hydrodynamics"};
   app.set_version_flag("--version", std::string("molten ") + MOLTEN_VERSION + " (" + MOLTEN_COMMIT + ")");
   app.require_subcommand(1);
+  app.failure_message(complaint);
   app.footer("Exit codes: 0 done, 2 usage or scene, 3 mesh or overlap, 4 diverged, 5 files, 6 checkpoint, 75 stopped, resumable");
   Commands commands;
   add_run(app, commands);

@@ -76,7 +76,7 @@ std::vector<Test> tests_of(const Scene& scene, double spacing) {
 template <int Dim>
 void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
   if (contact.empty()) return;
-  const double nearest = 0.2 * start.spacing;  // to a wall, m; contact pushes the rest of the radius out gently
+  const double nearest = 0.01 * start.spacing;  // to a wall, m; contact moves those in front of it out to their radius
   const std::vector<Test> tests = tests_of(scene, start.spacing);
   std::size_t inside = 0;
   Place3 first{};
@@ -89,7 +89,7 @@ void require_no_overlap(const Scene& scene, const Start& start, const Contact<Di
   }
   if (inside > 0)
     throw Error(ExitCode::geometry,
-                fmt::format("{}: {} of {} particles start inside or against a wall, the first at ({:.6g}, {:.6g}, {:.6g}) m; "
+                fmt::format("{}: {} of {} particles start inside a wall, the first at ({:.6g}, {:.6g}, {:.6g}) m; "
                             "move the fluid at least half a spacing ({:.3g} m) away from the walls",
                             scene.file, inside, start.position.size(), first[0], first[1], first[2], start.spacing / 2));
 }

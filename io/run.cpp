@@ -29,14 +29,13 @@ double seconds_since(std::chrono::steady_clock::time_point t) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
 }
 
-/// What a run keeps beside its state: which outputs come next and what has been spent so far.
+/// What a run keeps beside its state: where its output stands and what has been spent so far.
 struct Ledger {
-  std::int64_t next_frame = 0, series_rows = 0;
+  std::int64_t frame_number = 0;  // of the next frame's file
   double initial_energy = 0, stepping_seconds = 0, particle_steps = 0, pairs_at_start = 0;
 
   void archive(Archive& a) {
-    a.value("run/next_frame", next_frame);
-    a.value("run/series_rows", series_rows);
+    a.value("run/frame_number", frame_number);
     a.value("run/initial_energy", initial_energy);
     a.value("run/stepping_seconds", stepping_seconds);
     a.value("run/particle_steps", particle_steps);
@@ -53,7 +52,9 @@ class Runner {
 
   void restore(const std::filesystem::path& checkpoint) {
     read_checkpoint(checkpoint, [this](Archive& a) { archive(a); });
-    drop_frames_from(folder_, static_cast<int>(ledger_.next_frame));
+    drop_frames_from(folder_, static_cast<int>(ledger_.frame_number));
+    if (ledger_.frame_number > 0) last_frame_ = list_frames(folder_).back().time;
+    schedule();
     fresh_ = false;
   }
 
@@ -83,7 +84,9 @@ class Runner {
       const Diagnostics d = diagnose(state_);
       ledger_.initial_energy = d.kinetic_energy + d.potential_energy;
       ledger_.pairs_at_start = static_cast<double>(count_pairs(state_));
-      write_due(d);
+      write_row(d);
+      if (scene_.output.frames_per_second > 0) write_snapshot();
+      schedule();
       checkpoint();
     }
     progress_.emplace(state_.clock.time, scene_.run.end_time, ledger_.initial_energy);
@@ -95,33 +98,43 @@ class Runner {
            (scene_.run.max_steps && state_.clock.step >= *scene_.run.max_steps);
   }
 
-  /// Time of frame k; steps end on these alone, so a stop and a resume leave no trace.
-  double frame_time(std::int64_t k) const {
-    return scene_.output.frames_per_second > 0 ? static_cast<double>(k) / scene_.output.frames_per_second : 1e300;
+  /// Sets the times (s) of the next frame and row: the next multiples of their intervals. Steps end on frames' times
+  /// alone, so a stop and a resume leave no trace.
+  void schedule() {
+    const double fps = scene_.output.frames_per_second, every = scene_.output.series_every, time = state_.clock.time;
+    const auto next = [time](auto&& at) {
+      auto k = static_cast<std::int64_t>(time / at(1));
+      while (at(static_cast<double>(k)) <= time) ++k;
+      return at(static_cast<double>(k));
+    };
+    state_.clock.stop = fps > 0 ? next([fps](double k) { return k / fps; }) : 1e300;
+    next_row_ = every > 0 ? next([every](double k) { return k * every; }) : 1e300;
   }
 
   void advance() {
-    state_.clock.stop = frame_time(ledger_.next_frame);
     const auto start = std::chrono::steady_clock::now();
     step(state_);
     ledger_.stepping_seconds += seconds_since(start);
     ledger_.particle_steps += static_cast<double>(state_.particles.count());
-    const bool frame_due = state_.clock.time >= frame_time(ledger_.next_frame);
-    const bool row_due = scene_.output.series_every > 0 &&
-                         state_.clock.time >= static_cast<double>(ledger_.series_rows) * scene_.output.series_every;
-    if (frame_due || row_due) write_due(diagnose(state_));
+    write_due();
     if (scene_.output.checkpoint_every > 0 && seconds_since(last_checkpoint_) > scene_.output.checkpoint_every) checkpoint();
     if (progress_->is_due()) show_progress();
   }
 
-  void write_due(const Diagnostics& d) {
+  void write_due() {
+    const bool frame_due = state_.clock.time >= state_.clock.stop;
+    if (!frame_due && state_.clock.time < next_row_) return;
     const auto scope = state_.timer.scope("output");
-    series_->add(state_.clock, d);
-    const double every = scene_.output.series_every;
-    while (every > 0 && static_cast<double>(ledger_.series_rows) * every <= state_.clock.time) ++ledger_.series_rows;
-    if (state_.clock.time < frame_time(ledger_.next_frame)) return;
-    write_frame(folder_, static_cast<int>(ledger_.next_frame), take_snapshot(state_, scene_.output.fields));
-    ++ledger_.next_frame;
+    write_row(diagnose(state_));
+    if (frame_due) write_snapshot();
+    schedule();
+  }
+
+  void write_row(const Diagnostics& d) { series_->add(state_.clock, d); }
+
+  void write_snapshot() {
+    write_frame(folder_, static_cast<int>(ledger_.frame_number++), take_snapshot(state_, scene_.output.fields));
+    last_frame_ = state_.clock.time;
   }
 
   void checkpoint() {
@@ -146,9 +159,7 @@ class Runner {
     progress_->finish();
     checkpoint();
     // The last state is worth a frame even between frame times; a resume drops it again.
-    if (code == ExitCode::done && scene_.output.frames_per_second > 0 &&
-        state_.clock.time > frame_time(ledger_.next_frame - 1) * (1 + 1e-12))
-      write_frame(folder_, static_cast<int>(ledger_.next_frame), take_snapshot(state_, scene_.output.fields));
+    if (code == ExitCode::done && scene_.output.frames_per_second > 0 && state_.clock.time > last_frame_) write_snapshot();
     summarise(code == ExitCode::done ? "done" : "interrupted");
     if (code == ExitCode::interrupted)
       fmt::print(stderr, "stopped at t = {:.6g} s, step {}; go on with: molten resume {}\n", state_.clock.time,
@@ -187,6 +198,7 @@ class Runner {
   std::string fingerprint_;
   Ledger ledger_;
   bool fresh_ = true;
+  double next_row_ = 0, last_frame_ = -1;  // s
   std::optional<Series> series_;
   std::optional<Progress> progress_;
   std::chrono::steady_clock::time_point last_checkpoint_;
@@ -243,6 +255,7 @@ void set_threads(int threads) {
 
 ExitCode run_scene(const Scene& scene, const RunOptions& options) {
   const Features features = features_of(scene);
+  require_fields(features, scene.output.fields);
   const Start start = fill_bodies(scene, features);  // meshes are read in child processes: before any threads
   set_threads(options.threads);
   return dispatch(scene, [&]<int Dim, class Real>() {
@@ -290,6 +303,7 @@ ExitCode resume_run(const ResumeOptions& options) {
   Scene scene = parse_scene(text, copy.string(), options.overrides);
   scene.file = scene_file_of(options.folder);
   const Features features = features_of(scene);
+  require_fields(features, scene.output.fields);
   const Start start = fill_bodies(scene, features);
   set_threads(options.threads);
   const std::string print = fingerprint(scene, start);

@@ -13,20 +13,21 @@ struct ArtificialViscosity {
   using Sums = FieldList<Acceleration>;
   using Radial = FieldList<Acceleration>;
   bool on = false;
-  Real strength = 0;   // 2 α c h / ρ0, m⁵/(kg s)
-  Real softening = 0;  // 0.01 h², m²
+  Real inverse_strength = 0;  // ρ0/(2 α c h), kg s/m⁵
+  Real softening = 0;         // 0.01 h², m²
 
   ArtificialViscosity(double alpha, double sound_speed, double smoothing_length, double rest_density)
       : on(alpha > 0),
-        strength(Real(2 * alpha * sound_speed * smoothing_length / rest_density)),
+        inverse_strength(on ? Real(rest_density / (2 * alpha * sound_speed * smoothing_length)) : 0),
         softening(Real(0.01 * smoothing_length * smoothing_length)) {}
 
   template <class Pair, class I, class J, class Out>
   void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
     using L = decltype(ij.r2);
     const L approach = min(dot(i[velocity] - j[velocity], ij.x), L(0));
-    const L twice_density = L(2) + i[compression] + j[compression];  // 2 ρ̄/ρ0
-    out.along(acceleration, L(strength) * approach * reciprocal((ij.r2 + L(softening)) * twice_density));
+    // 2 ρ̄/ρ0 over the strength; grouped so that i's share is worked out once
+    const L density = L(inverse_strength) * (L(2) + i[compression]) + L(inverse_strength) * j[compression];
+    out.along(acceleration, approach * reciprocal((ij.r2 + L(softening)) * density));
   }
 };
 

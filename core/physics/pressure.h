@@ -16,7 +16,7 @@ struct PressureForce {
 
   template <class Pair, class I, class J, class Out>
   void operator()(const Pair&, const I& i, const J& j, Out& out) const {
-    out.along(acceleration, -(i[pressure_term] + j[pressure_term]));
+    out.along(acceleration, -i[pressure_term] - j[pressure_term]);
   }
 };
 

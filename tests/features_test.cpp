@@ -1,0 +1,193 @@
+#include "core/features.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "core/error.h"
+#include "tests/particle_sets.h"
+
+namespace molten {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// Names of the columns in the order of fields.h.
+Names columns_of(const Features& features) {
+  Names names;
+  for_each_field([&]<class F>(F) {
+    if (features.columns().test(field_index<F>)) names.emplace_back(F::name);
+  });
+  return names;
+}
+
+Scene minimal() {
+  Scene scene;
+  scene.numerics.artificial_viscosity = 0;
+  return scene;
+}
+
+const Names minimal_columns = {"id",
+                               "position",
+                               "velocity",
+                               "compression",
+                               "half_velocity",
+                               "half_compression",
+                               "previous_compression_rate",
+                               "local_position",
+                               "pressure_term",
+                               "acceleration",
+                               "compression_rate"};
+
+/// What `with` has and `without` has not, and the other way round.
+Names difference(const Names& with, const Names& without) {
+  Names names;
+  for (const std::string& n : with)
+    if (std::find(without.begin(), without.end(), n) == without.end()) names.push_back(n);
+  return names;
+}
+
+struct Change {
+  Names columns, passes_gone, passes_new;
+};
+
+/// Holds a scene with one more thing against the minimal one.
+void expect_adds(const std::function<void(Scene&)>& edit, const Change& expected) {
+  Scene scene = minimal();
+  edit(scene);
+  const Features features = features_of(scene), least = features_of(minimal());
+  EXPECT_EQ(difference(columns_of(features), minimal_columns), expected.columns);
+  EXPECT_EQ(difference(minimal_columns, columns_of(features)), Names{}) << "nothing may go missing";
+  EXPECT_EQ(difference(least.passes(), features.passes()), expected.passes_gone);
+  EXPECT_EQ(difference(features.passes(), least.passes()), expected.passes_new);
+}
+
+TEST(Features, MinimalSceneHasExactlyThis) {
+  const Features features = features_of(minimal());
+  EXPECT_EQ(columns_of(features), minimal_columns);
+  EXPECT_EQ(features.passes(), (Names{"forces", "integrate"}));
+  EXPECT_EQ(features.names(), (Names{"leap-frog"}));
+}
+
+TEST(Features, SymplecticEulerSwapsTheIntegratorsColumns) {
+  Scene scene = minimal();
+  scene.numerics.integrator = IntegratorKind::symplectic_euler;
+  const Features features = features_of(scene);
+  EXPECT_EQ(difference(columns_of(features), minimal_columns), (Names{"older_compression_rate"}));
+  EXPECT_EQ(difference(minimal_columns, columns_of(features)), (Names{"half_velocity", "half_compression"}));
+  EXPECT_EQ(features.names(), (Names{"symplectic-euler"}));
+}
+
+TEST(Features, HeatAddsItsColumns) {
+  expect_adds([](Scene& s) { s.fluid.heat = Heat{}; },
+              {{"temperature", "local_temperature", "temperature_rate"}, {"forces"}, {"forces and heat"}});
+}
+
+TEST(Features, VaryingViscosityAddsItsPass) {
+  expect_adds([](Scene& s) { s.fluid.rheology.model = Rheology::Model::smd; },
+              {{"viscosity", "stress"}, {}, {"viscosity"}});
+}
+
+TEST(Features, ConstantViscosityAddsNoColumn) {
+  expect_adds([](Scene& s) { s.fluid.rheology.viscosity = 1; }, {});
+  expect_adds([](Scene& s) { s.numerics.artificial_viscosity = 0.1; }, {});
+}
+
+TEST(Features, XsphAddsItsColumn) {
+  expect_adds([](Scene& s) { s.numerics.xsph = Xsph{}; }, {{"xsph_velocity"}, {}, {}});
+  expect_adds([](Scene& s) { s.numerics.xsph = Xsph{Xsph::Form::position, 0}; }, {});
+}
+
+TEST(Features, WallsAddTheirPass) {
+  expect_adds([](Scene& s) { s.boundaries.emplace_back(); }, {{}, {"integrate"}, {"integrate and collide"}});
+}
+
+TEST(Features, WallsHeatMeltingAndXsphTogether) {
+  Scene scene = minimal();
+  scene.boundaries.emplace_back();
+  scene.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 150}, 60, 20};
+  scene.fluid.heat = Heat{1e-4, std::array<double, 2>{40, 60}, 20, 90};
+  scene.numerics.xsph = Xsph{};
+  scene.numerics.artificial_viscosity = 1;
+  const Features features = features_of(scene);
+  EXPECT_EQ(features.passes(), (Names{"viscosity", "forces and heat", "integrate and collide"}));
+  EXPECT_EQ(features.names(), (Names{"heat", "smd-viscosity", "artificial-viscosity", "xsph", "contact", "leap-frog"}));
+  EXPECT_EQ(columns_of(features).size(), minimal_columns.size() + 3 + 2 + 1);
+}
+
+/// The reason for which a scene is refused; empty if it is not.
+std::string refusal(const std::function<void(Scene&)>& edit) {
+  Scene scene = minimal();
+  scene.file = "bad.toml";
+  edit(scene);
+  try {
+    features_of(scene);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::usage);
+    return e.what();
+  }
+  return {};
+}
+
+void expect_refused(const std::function<void(Scene&)>& edit, const std::string& reason) {
+  const std::string line = refusal(edit);
+  EXPECT_TRUE(line.starts_with("bad.toml: " + reason)) << line;
+}
+
+TEST(Features, RefusesWhatMakesNoSense) {
+  const auto two_jumps = [](Scene& s) { s.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 150}, 60, 20}; };
+  const std::string jumps = "fluid.rheology.jump_number: two values need [fluid.heat] with melting_range";
+  expect_refused(two_jumps, jumps);
+  expect_refused([&](Scene& s) { two_jumps(s), s.fluid.heat = Heat{}; }, jumps);
+  expect_refused(
+      [](Scene& s) {
+        s.fluid.heat = Heat{1e-4, std::array<double, 2>{40, 60}, 20, 90};
+      },
+      "fluid.heat.melting_range: only model = \"smd\" melts");
+  expect_refused(
+      [](Scene& s) {
+        s.periodic = {true, false, false};
+      },
+      "scene.periodic: a periodic axis needs scene.domain");
+}
+
+TEST(Features, TakesWhatMakesSense) {
+  EXPECT_EQ(refusal([](Scene& s) { s.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 15}, 60, 20}; }), "");
+  EXPECT_EQ(refusal([](Scene& s) { s.fluid.heat = Heat{}; }), "");
+  EXPECT_EQ(refusal([](Scene& s) {
+              s.periodic = {true, false, false};
+              s.domain = Box{{0, 0, 0}, {1, 1, 1}};
+            }),
+            "");
+  EXPECT_EQ(refusal([](Scene& s) { s.dimensions = 2, s.periodic = {false, false, true}; }), "") << "no z in 2-D";
+}
+
+TEST(Features, PassesAreTheTimersNames) {
+  Scene scene = particle_sets::plain_scene(2);
+  scene.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 15}, 60, 20};
+  scene.fluid.heat = Heat{1e-4, std::nullopt, 20, 90};
+  auto s = particle_sets::state_of<2, float>(scene, particle_sets::cube<2>(6, 0.1), 0.1);
+  step(s);
+  Names timed;
+  for (const auto& [name, seconds] : s.timer.seconds())
+    if (name != "sort and list") timed.push_back(name);
+  Names passes = s.features.passes();
+  std::sort(passes.begin(), passes.end());
+  EXPECT_EQ(timed, passes);
+}
+
+TEST(Features, ColumnsThatARunLacksTakeNoMemory) {
+  using namespace particle_sets;
+  const auto bytes = [](const Scene& scene) {
+    return state_of<3, float>(scene, cube<3>(16, 0.1), 0.1).particles.bytes();
+  };
+  Scene hot = plain_scene(3);
+  hot.fluid.heat = Heat{};
+  const std::size_t particles = 16 * 16 * 16, more = bytes(hot) - bytes(plain_scene(3));
+  EXPECT_GE(more, particles * (8 + 4 + 4));
+  EXPECT_LT(more, particles * (8 + 4 + 4) * 1.5) << "a double and two floats each, and room for padding";
+}
+
+}  // namespace
+}  // namespace molten

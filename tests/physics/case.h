@@ -1,0 +1,100 @@
+// Small runs that the physics tests make by hand: a lattice, a scene's numbers, and a state that steps.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/step.h"
+#include "io/assemble.h"
+#include "io/scene_file.h"
+
+namespace molten::physics_case {
+
+/// {dimensions, precision} of a typed test.
+template <int dim_, class Real_> struct Flavour {
+  static constexpr int dim = dim_;
+  using Real = Real_;
+  static constexpr bool single = sizeof(Real) == 4;
+};
+using Flavours = ::testing::Types<Flavour<2, float>, Flavour<2, double>, Flavour<3, float>, Flavour<3, double>>;
+
+struct FlavourNames {
+  template <class F> static std::string GetName(int) {
+    return std::to_string(F::dim) + (F::single ? "dSingle" : "dDouble");
+  }
+};
+
+/// Small runs are quicker without threads, and a busy machine does not slow them.
+struct OneThread {
+  OneThread() : before(omp_get_max_threads()) { omp_set_num_threads(1); }
+  ~OneThread() { omp_set_num_threads(before); }
+  int before;
+};
+
+using Triple = std::array<double, 3>;
+
+/// A lattice of `cells` particles along each axis, its first cell at the origin; heat is for the caller to fill in.
+inline Start lattice(int dimensions, const std::array<int, 3>& cells, double spacing) {
+  Start start;
+  start.spacing = spacing;
+  for (int k = 0; k < (dimensions == 3 ? cells[2] : 1); ++k)
+    for (int j = 0; j < cells[1]; ++j)
+      for (int i = 0; i < cells[0]; ++i)
+        start.position.push_back(
+            {(i + 0.5) * spacing, (j + 0.5) * spacing, dimensions == 3 ? (k + 0.5) * spacing : 0.0});
+  start.velocity.assign(start.position.size(), Triple{});
+  start.measure = static_cast<double>(start.position.size()) * std::pow(spacing, dimensions);
+  return start;
+}
+
+inline void jitter(Start& start, int dimensions, double part) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-part * start.spacing, part * start.spacing);
+  for (Triple& x : start.position)
+    for (int d = 0; d < dimensions; ++d) x[d] += any(random);
+}
+
+/// A scene of these dimensions without gravity and artificial viscosity; the fluid's shape is a stand-in, as the
+/// particles come from a lattice.
+inline Scene plain_scene(int dimensions) {
+  Scene scene;
+  scene.file = "test";
+  scene.dimensions = dimensions;
+  scene.gravity = {};
+  scene.numerics.artificial_viscosity = 0;
+  scene.numerics.sound_speed = 1;
+  return scene;
+}
+
+/// All axes close on themselves after `size` (m).
+inline void make_periodic(Scene& scene, const Triple& size) {
+  scene.domain = Box{{0, 0, 0}, size};
+  for (int d = 0; d < scene.dimensions; ++d) scene.periodic[d] = true;
+}
+
+template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Start& start) {
+  const Parameters<Dim> p = parameters_of<Dim>(scene, start);
+  Contact<Dim> contact(build_walls<Dim>(scene, start.spacing), start.spacing / 2, p.support_radius);
+  return make_state<Dim, Real>(features_of(scene), p, std::move(contact), start);
+}
+
+/// f(slot) for every particle.
+template <int Dim, class Real, class F> void for_each_particle(const State<Dim, Real>& s, F&& f) {
+  for (std::size_t slot = 0; slot < s.particles.slots(); ++slot)
+    if (!s.particles.is_padding(slot)) f(slot);
+}
+
+template <int Dim, class Real> void run_until(State<Dim, Real>& s, double time) {
+  s.clock.stop = time;
+  while (s.clock.time < time) step(s);
+}
+
+}  // namespace molten::physics_case
