@@ -159,6 +159,18 @@ std::int64_t count_pairs(const State<Dim, Real>& s) {
 }
 
 template <int Dim, class Real>
+std::int64_t fastest_particle(const State<Dim, Real>& s) {
+  std::int64_t fastest = -1;
+  double most = -1;
+  for (const std::uint32_t slot : slots_by_id(s.particles)) {
+    double v2 = 0;
+    for (int d = 0; d < Dim; ++d) v2 += std::pow(double(s.particles[velocity][d][slot]), 2);
+    if (v2 > most) most = v2, fastest = s.particles[id][0][slot];
+  }
+  return fastest;
+}
+
+template <int Dim, class Real>
 std::string find_non_finite(const State<Dim, Real>& s) {
   const Particles<Dim, Real>& p = s.particles;
   const auto likely_cause = [&](std::string_view field) -> std::string {
@@ -187,6 +199,7 @@ std::string find_non_finite(const State<Dim, Real>& s) {
   template Diagnostics diagnose(const State<Dim, Real>&);                                            \
   template Snapshot take_snapshot(const State<Dim, Real>&, const std::vector<std::string>&);         \
   template std::int64_t count_pairs(const State<Dim, Real>&);                                        \
+  template std::int64_t fastest_particle(const State<Dim, Real>&);                                   \
   template std::string find_non_finite(const State<Dim, Real>&);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)

@@ -38,6 +38,10 @@ void require_fields(const Features& features, const std::vector<std::string>& na
 template <int Dim, class Real>
 std::int64_t count_pairs(const State<Dim, Real>& s);
 
+/// The id of the fastest particle.
+template <int Dim, class Real>
+std::int64_t fastest_particle(const State<Dim, Real>& s);
+
 /// One line on the first particle whose state is not finite: its id, the field, the likely cause. Empty: all finite.
 template <int Dim, class Real>
 std::string find_non_finite(const State<Dim, Real>& s);

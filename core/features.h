@@ -19,6 +19,9 @@ struct Features {
   bool contact = false;              // walls
   IntegratorKind integrator = IntegratorKind::leap_frog;
 
+  /// No forces but pressure and artificial viscosity, no heat, no XSPH: the shortest instantiation of the forces pass serves.
+  bool only_basic_forces() const { return !heat && !stress && !laminar && !xsph; }
+
   FieldSet columns() const;
   /// The passes of one step in their order.
   std::vector<std::string> passes() const;

@@ -47,8 +47,10 @@ struct Values;
 template <class... F, int Dim, class T>
 struct Values<FieldList<F...>, Dim, T> : Slot<F, Dim, T>... {
   template <class G>
+    requires contains<G, FieldList<F...>>
   value_t<G, Dim, T>& operator[](G) { return Slot<G, Dim, T>::value; }
   template <class G>
+    requires contains<G, FieldList<F...>>
   const value_t<G, Dim, T>& operator[](G) const { return Slot<G, Dim, T>::value; }
 };
 

@@ -67,12 +67,18 @@ struct RatesFinish {
         v2 += double(v[d][slot]) * v[d][slot];
       }
       compression_rates[slot] = alive * inverse_rest_density * sums[compression_rate];
-      if (s.features.heat) temperature_rates[slot] = alive * sums[temperature_rate];
-      if (s.features.xsph)
-        for (int d = 0; d < Dim; ++d) {
+      if constexpr (requires { sums[temperature_rate]; }) {
+        if (s.features.heat) {
+          temperature_rates[slot] = alive * sums[temperature_rate];
+          extremes.finite &= std::abs(temperature_rates[slot]) < 1e30;  // false for NaN
+        }
+      }
+      if constexpr (requires { sums[xsph_velocity]; }) {
+        for (int d = 0; d < Dim && s.features.xsph; ++d) {
           x[d][slot] = alive * sums[xsph_velocity][d];
           x2 += double(x[d][slot]) * x[d][slot];
         }
+      }
       if (padding) return;
       extremes.acceleration2 = std::max(extremes.acceleration2, a2);
       extremes.speed2 = std::max(extremes.speed2, v2);
@@ -125,12 +131,19 @@ void find_rates(State<Dim, Real>& s) {
   const double rho0 = p.eos.rest_density;
   std::vector<Extremes> extremes(s.neighbours.chunks().size());
   const RatesFinish<Dim, Real> finish{s, extremes};
+  const Continuity continuity;
+  const PressureForce pressure;
+  const ArtificialViscosity<Real> artificial(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, rho0);
   with_run_kernel(s, [&](const auto& kernel) {
-    pair_pass<native_lanes<Real>>(
-        s.neighbours, s.particles, kernel, finish, Continuity{}, PressureForce{},
-        ArtificialViscosity<Real>(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, rho0),
-        LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0), StressForce{s.features.stress},
-        HeatConduction<Real>(s.features.heat ? p.diffusivity : 0, rho0), XsphTerm<Real>(s.features.xsph, rho0));
+    const auto pass = [&](const auto&... terms) {
+      pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, continuity, pressure, artificial, terms...);
+    };
+    // Two instantiations: what every scene has, and with everything that a scene may have beside it.
+    if (s.features.only_basic_forces()) pass();
+    else
+      pass(LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0),
+           StressForce<Dim, Real>(s.features.stress, rho0),
+           HeatConduction<Real>(s.features.heat ? p.diffusivity : 0, rho0), XsphTerm<Real>(s.features.xsph, rho0));
   });
   s.extremes = joined(extremes);
   if (s.features.laminar) s.extremes.kinematic_viscosity = p.viscosity / rho0;

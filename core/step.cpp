@@ -52,7 +52,8 @@ void require_sane(const State<Dim, Real>& s) {
   if (!s.extremes.finite) throw Error(ExitCode::diverged, find_non_finite(s));
   const double speed = std::sqrt(s.extremes.speed2), sound = s.parameters.eos.sound_speed;
   if (speed > 30 * sound)
-    throw Error(ExitCode::diverged, "the run blew up: a particle moves at " + std::to_string(speed / sound) +
+    throw Error(ExitCode::diverged, "the run blew up: particle " + std::to_string(fastest_particle(s)) +
+                                        " has a velocity of " + std::to_string(speed / sound) +
                                         " times the sound speed; raise numerics.sound_speed, lower numerics.courant or "
                                         "add numerics.xsph");
 }
@@ -72,8 +73,9 @@ void choose_time_step(State<Dim, Real>& s) {
   } else {
     limit(p.courant_sound * h / (p.eos.sound_speed + std::sqrt(s.extremes.speed2)), Limit::sound);
     limit(p.courant_force * std::sqrt(h / (std::sqrt(s.extremes.acceleration2) + 1e-300)), Limit::force);
-    if (s.extremes.kinematic_viscosity > 0)
-      limit(p.courant_viscous * h * h / s.extremes.kinematic_viscosity, Limit::viscous);
+    // The force of a varying viscosity has two parts that both damp the shortest waves: half the step is stable.
+    const double viscous = s.features.stress ? p.courant_viscous / 2 : p.courant_viscous;
+    if (s.extremes.kinematic_viscosity > 0) limit(viscous * h * h / s.extremes.kinematic_viscosity, Limit::viscous);
     if (p.diffusivity > 0) {
       constexpr double conduction_constant = 3.5;  // h² ∫|W'|/r of the Wendland kernel, the largest of the common ones
       limit(p.courant_conduction * h * h / (2 * conduction_constant * p.diffusivity), Limit::conduction);

@@ -134,7 +134,7 @@ template <int N, int Dim, class Real> std::vector<Sums> fused(const State<Dim, R
   with_kernel<Real>(q.kernel, Dim, q.smoothing_length, q.particle_mass, [&](const auto& kernel) {
     pair_pass<N>(s.neighbours, s.particles, kernel, finish, Continuity{}, PressureForce{}, StrainRateTerm{},
                  ArtificialViscosity<Real>(on ? alpha : 0, q.eos.sound_speed, q.smoothing_length, rho0),
-                 LaminarViscosity<Real>(on ? viscosity_of_all : 0, rho0), StressForce{on},
+                 LaminarViscosity<Real>(on ? viscosity_of_all : 0, rho0), StressForce<Dim, Real>(on, 1000),
                  HeatConduction<Real>(on ? diffusivity_of_all : 0, rho0), XsphTerm<Real>(on, rho0));
   });
   return all;
@@ -229,13 +229,13 @@ struct SumsStress {
 };
 
 TEST(PairPass, OnlyIndependentTermsFuse) {
-  static_assert(Fusable<Continuity, PressureForce, ArtificialViscosity<float>, LaminarViscosity<float>, StressForce,
+  static_assert(Fusable<Continuity, PressureForce, ArtificialViscosity<float>, LaminarViscosity<float>, StressForce<3, float>,
                         HeatConduction<float>, XsphTerm<float>>);
   static_assert(Fusable<StrainRateTerm>);
   static_assert(Fusable<ReadsAcceleration>);
   static_assert(!Fusable<PressureForce, ReadsAcceleration>);
   static_assert(!Fusable<ReadsAcceleration, Continuity, PressureForce>);
-  static_assert(!Fusable<StressForce, SumsStress>);
+  static_assert(!Fusable<StressForce<3, float>, SumsStress>);
   static_assert(!disjoint<FieldList<Velocity, Compression>, FieldList<Compression>>);
   static_assert(disjoint<FieldList<>, FieldList<Compression>>);
 }

@@ -2,6 +2,7 @@
 // ∇v_i = Σ V_j (v_j − v_i) ⊗ ∇W_ij, and the force Σ m_j (S_i/ρ_i² + S_j/ρ_j²)·∇W_ij of the stress S = η D.
 #pragma once
 
+#include <limits>
 #include <type_traits>
 
 #include "core/fields.h"
@@ -23,14 +24,34 @@ struct StrainRateTerm {
   }
 };
 
+/// The sum of stresses alone does not feel velocities that alternate from particle to particle: their rate of strain is
+/// zero. So what a pair's approach has beyond the particles' own rates of strain, v_ij·x − ¼ x·(D_i + D_j)·x, of third order in
+/// r where the velocity is smooth, is damped in Monaghan's form with the harmonic mean viscosity η̄:
+///   + Σ m_j 2(d+2) η̄ (v_ij·x − ¼ x·(D_i + D_j)·x)/(ρ_i ρ_j r²) ∇W_ij.
+/// Both parts conserve momentum, linear and angular.
+template <int Dim, class Real>
 struct StressForce {
-  using Reads = FieldList<Stress>;
+  using Reads = FieldList<Stress, Viscosity, Velocity, Compression>;
   using Sums = FieldList<Acceleration>;
+  using Radial = FieldList<Acceleration>;
   bool on = false;
+  Real density2 = 0;  // ρ0², kg²/m⁶
+
+  StressForce(bool present, double rest_density) : on(present), density2(Real(rest_density * rest_density)) {}
 
   template <class Pair, class I, class J, class Out>
   void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
-    out.gradW(acceleration, (i[stress] + j[stress]) * ij.x);
+    using L = decltype(ij.r2);
+    const Vec<Dim, L> force_i = i[stress] * ij.x, force_j = j[stress] * ij.x;  // η D·x/ρ² of each
+    out.gradW(acceleration, force_i + force_j);
+    const L eta_i = i[viscosity], eta_j = j[viscosity];
+    const L rho_i = L(1) + i[compression], rho_j = L(1) + j[compression];  // over ρ0
+    // With η̄ = 2 η_i η_j/(η_i + η_j), and D = ρ² (stress)/η, the viscosities that D is divided by cancel.
+    const L strain = eta_j * rho_i * rho_i * dot(ij.x, force_i) + eta_i * rho_j * rho_j * dot(ij.x, force_j);
+    const L beyond = L(2) * eta_i * eta_j * dot(i[velocity] - j[velocity], ij.x) - L(Real(0.5)) * L(density2) * strain;
+    const L tiny(std::numeric_limits<Real>::min() * Real(1e8));  // a particle with itself: r = 0
+    const L scale = L(density2) * (eta_i + eta_j) * rho_i * rho_j * ij.r2;
+    out.along(acceleration, L(Real(2 * (Dim + 2))) * beyond * reciprocal(max(scale, tiny)));
   }
 };
 

@@ -37,7 +37,7 @@ Scene channel_scene(const Channel& c, double length) {
   }
   scene.numerics.smoothing_ratio = c.smoothing_ratio;
   scene.numerics.sound_speed = 20;
-  scene.numerics.courant_viscous = 0.04;
+  
   make_periodic(scene, {length, 4 * half_gap, 0});
   return scene;
 }
@@ -193,8 +193,8 @@ TEST(Channel, NewtonianAtTwoSpacings) {
   expect_within(run_channel<double>({.rows = 20, .viscosity = 1, .smoothing_ratio = 2}, 3), 0.006, 0.006);
 }
 
-// From the exact profile and for a short while. The sum of two stresses does not feel velocities that alternate from
-// row to row, which the kink of the profile where the halves meet sets going; they grow with time.
+// From the exact profile and for a short while: the kink of the profile where the halves meet sets velocities going that
+// alternate from row to row.
 TEST(Channel, ViscoplasticKeepsItsProfileForAWhile) {
   for (const double jump : {15.0, 150.0}) {
     const Outcome o = run_channel<double>({.jump_number = jump}, 0.05, false);
@@ -203,27 +203,27 @@ TEST(Channel, ViscoplasticKeepsItsProfileForAWhile) {
   }
 }
 
-// What follows holds once the stress force damps those rows; it does not with the bare sum of stresses.
+// What follows fails by tens of percent with the bare sum of stresses, which does not feel such velocities.
 
 // At stresses far below the yield stress the fluid has the viscosity η₀.
-TEST(Channel, DISABLED_ViscoplasticThatIsAsGoodAsNewtonian) {
+TEST(Channel, ViscoplasticThatIsAsGoodAsNewtonian) {
   expect_within(run_channel<double>({.jump_number = 0, .flow_index = 1, .wall_stress = 0.01}, 4), 0.05, 0.05);
 }
 
-TEST(Channel, DISABLED_Viscoplastic15FromRest) {
+TEST(Channel, Viscoplastic15FromRest) {
   expect_within(run_channel<double>({.jump_number = 15}, 4), 0.045, 0.02);
   expect_within(run_channel<float>({.jump_number = 15}, 4), 0.045, 0.02);
 }
 
-TEST(Channel, DISABLED_Viscoplastic150FromItsProfile) {
+TEST(Channel, Viscoplastic150FromItsProfile) {
   expect_within(run_channel<double>({.jump_number = 150}, 0.3, false), 0.075, 0.03);
 }
 
-TEST(SlowChannel, DISABLED_Viscoplastic15Finer) {
+TEST(SlowChannel, Viscoplastic15Finer) {
   expect_within(run_channel<double>({.rows = 20, .jump_number = 15}, 4), 0.045, 0.04);
 }
 
-TEST(SlowChannel, DISABLED_Viscoplastic150FromRest) {
+TEST(SlowChannel, Viscoplastic150FromRest) {
   expect_within(run_channel<double>({.jump_number = 150}, 3), 0.1, 0.06);
 }
 
