@@ -8,8 +8,8 @@
 
 #include "core/kernel.h"
 #include "core/step.h"
-#include "io/assemble.h"
-#include "io/scene_file.h"
+#include "io/geometry/assemble.h"
+#include "io/scene/scene_file.h"
 
 namespace molten::bench {
 

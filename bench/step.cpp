@@ -11,7 +11,7 @@
 #include "bench/cases.h"
 #include "core/diagnostics.h"
 #include "core/step.h"
-#include "io/report.h"
+#include "io/program/report.h"
 #include "version.h"
 
 namespace molten::bench {

@@ -4,9 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <new>
 
-#include "io/commands.h"
-#include "io/run.h"
-#include "io/scene_file.h"
+#include "io/program/commands.h"
+#include "io/program/run.h"
+#include "io/scene/scene_file.h"
 #include "version.h"
 
 namespace {

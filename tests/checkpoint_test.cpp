@@ -1,4 +1,4 @@
-#include "io/checkpoint.h"
+#include "io/hdf5/checkpoint.h"
 
 #include <gtest/gtest.h>
 

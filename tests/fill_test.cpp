@@ -13,7 +13,7 @@
 
 #include "core/boundary/shapes.h"
 #include "core/error.h"
-#include "io/mesh_file.h"
+#include "io/geometry/mesh_file.h"
 
 namespace molten {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/frames.h"
+#include "io/hdf5/frames.h"
 
 #include <gtest/gtest.h>
 

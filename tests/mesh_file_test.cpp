@@ -1,5 +1,5 @@
 // Mesh files: the three formats agree, and damaged or hostile files end in one clear line.
-#include "io/mesh_file.h"
+#include "io/geometry/mesh_file.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "core/boundary/shapes.h"
 #include "core/error.h"
-#include "io/child_process.h"
+#include "io/geometry/child_process.h"
 #include "tests/temp_folder.h"
 
 namespace molten {

@@ -1,4 +1,4 @@
-#include "io/render.h"
+#include "io/picture/render.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "core/error.h"
-#include "io/camera.h"
-#include "io/colour_field.h"
-#include "io/font.h"
+#include "io/picture/camera.h"
+#include "io/picture/colour_field.h"
+#include "io/picture/font.h"
 #include "tests/temp_folder.h"
 
 namespace molten {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <map>
 
-#include "io/checkpoint.h"
-#include "io/frames.h"
-#include "io/hdf5.h"
+#include "io/hdf5/checkpoint.h"
+#include "io/hdf5/frames.h"
+#include "io/hdf5/hdf5.h"
 #include "tests/program.h"
 
 namespace molten {

@@ -1,5 +1,5 @@
 // Scene files: what a good one means, how overrides change it, and that no text of any kind does harm.
-#include "io/scene_file.h"
+#include "io/scene/scene_file.h"
 
 #include <gtest/gtest.h>
 

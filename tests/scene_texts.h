@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/scene_file.h"
+#include "io/scene/scene_file.h"
 
 namespace molten::scene_texts {
 

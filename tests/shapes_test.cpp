@@ -8,7 +8,7 @@
 
 #include "core/boundary/polygon.h"
 #include "core/error.h"
-#include "io/mesh_file.h"
+#include "io/geometry/mesh_file.h"
 
 namespace molten {
 namespace {

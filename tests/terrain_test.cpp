@@ -1,5 +1,5 @@
 // Height grids: both formats, their orientation, and refusals that name the place.
-#include "io/terrain.h"
+#include "io/geometry/terrain.h"
 
 #include <gtest/gtest.h>
 

@@ -13,8 +13,8 @@
 
 #include "core/diagnostics.h"
 #include "core/step.h"
-#include "io/assemble.h"
-#include "io/scene_file.h"
+#include "io/geometry/assemble.h"
+#include "io/scene/scene_file.h"
 
 namespace molten::physics_case {
 

@@ -1,0 +1,183 @@
+#include "io/geometry/assemble.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+
+#include <cmath>
+#include <fstream>
+
+#include "core/boundary/shapes.h"
+#include "core/error.h"
+#include "core/fill.h"
+#include "io/geometry/mesh_file.h"
+#include "io/scene/scene_file.h"
+#include "io/geometry/terrain.h"
+
+namespace molten {
+
+namespace {
+
+/// Longest edge of curved walls and bodies, in spacings.
+constexpr double facet_edge = 2;
+
+/// Turns, scales and places a mesh from a file as the scene asks.
+void place(TriangleMesh& mesh, const MeshFile& file) {
+  const double to_radians = M_PI / 180;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double angle = file.rotation[axis] * to_radians;
+    if (angle == 0) continue;
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    for (Vec3& v : mesh.vertices) {
+      const double x = v[a], y = v[b];
+      v[a] = x * std::cos(angle) - y * std::sin(angle);
+      v[b] = x * std::sin(angle) + y * std::cos(angle);
+    }
+  }
+  if (!file.height && !file.placed) return;
+  Eigen::AlignedBox3d box;
+  for (const Vec3& v : mesh.vertices) box.extend(v);
+  const double scale = file.height ? *file.height / box.sizes()[2] : 1;
+  const Vec3 foot(box.center()[0], box.center()[1], box.min()[2]);
+  const Vec3 position(file.position.data());
+  for (Vec3& v : mesh.vertices) v = position + scale * (v - foot);
+}
+
+}  // namespace
+
+TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, bool must_close) {
+  if (shape.terrain) return triangulate(read_terrain(*shape.terrain, locate(scene, shape.terrain->path)));
+  if (!shape.mesh) return tessellate(shape, facet_edge * spacing);
+  const auto file = locate(scene, shape.mesh->path);
+  TriangleMesh mesh = read_mesh(file);
+  if (must_close) require_closed(mesh, file.string());
+  place(mesh, *shape.mesh);
+  return mesh;
+}
+
+namespace {
+
+void flip(TriangleMesh& mesh) {
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+Region region_of(const Scene& scene, const Body& body, double edge_spacing) {
+  Region region;
+  if (scene.dimensions == 2) region.outline = outline(body.shape, facet_edge * edge_spacing);
+  else region.mesh = surface(scene, body.shape, edge_spacing, true);
+  return region;
+}
+
+double measure_of(const Region& region, int dimensions) {
+  if (dimensions == 3) return signed_volume(region.mesh);
+  double area = 0;
+  for (std::size_t k = 0; k < region.outline.size(); ++k) {
+    const Vec2& a = region.outline[k];
+    const Vec2& b = region.outline[(k + 1) % region.outline.size()];
+    area += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+  }
+  return area;
+}
+
+double available_memory() {
+  std::ifstream info("/proc/meminfo");
+  std::string key;
+  double kib = 0;
+  while (info >> key >> kib) {
+    if (key == "MemAvailable:") return kib * 1024;
+    std::string unit;
+    std::getline(info, unit);
+  }
+  return 1e300;
+}
+
+void require_memory(const Scene& scene, double particles) {
+  constexpr double bytes_a_particle = 600;  // state, set-up and one frame at their largest
+  const double wanted = particles * bytes_a_particle, there = available_memory();
+  if (particles < 2e9 && wanted < there) return;
+  throw Error(ExitCode::usage, fmt::format("{}:{}: fluid: {:.3g} particles need about {:.3g} GB and {:.3g} GB are free; "
+                                           "ask for fewer particles or a larger spacing",
+                                           scene.file, scene.fluid.place.line, particles, wanted / 1e9, there / 1e9));
+}
+
+}  // namespace
+
+Start fill_bodies(const Scene& scene, const Features& features) {
+  const Fluid& fluid = scene.fluid;
+  const double coarse = fluid.spacing.value_or(0);
+  std::vector<Region> regions;
+  double measure = 0;
+  // Curved shapes are cut into facets a few spacings long; with a number of particles the spacing follows from a first
+  // estimate of the measure.
+  const auto build = [&](double spacing) {
+    regions.clear();
+    measure = 0;
+    for (const Body& body : fluid.bodies) {
+      regions.push_back(region_of(scene, body, spacing));
+      measure += measure_of(regions.back(), scene.dimensions);
+    }
+  };
+  if (fluid.spacing) {
+    build(coarse);
+  } else {
+    build(1e300);
+    build(std::pow(measure / static_cast<double>(*fluid.particles), 1.0 / scene.dimensions));
+  }
+  require_memory(scene, fluid.spacing ? measure / std::pow(coarse, scene.dimensions) : double(*fluid.particles));
+  const Filling filling = fill(regions, scene.dimensions, fluid.particles, fluid.spacing);
+
+  Start start;
+  start.spacing = filling.spacing;
+  start.measure = filling.measure;
+  const int up = scene.dimensions - 1;
+  double lowest = 1e300, highest = -1e300;
+  for (const Vec3& x : filling.positions) lowest = std::min(lowest, x[up]), highest = std::max(highest, x[up]);
+  for (std::size_t k = 0; k < filling.positions.size(); ++k) {
+    const Vec3& x = filling.positions[k];
+    const Body& body = fluid.bodies[filling.region[k]];
+    start.position.push_back({x[0], x[1], x[2]});
+    start.velocity.push_back(body.velocity);
+    if (!features.heat) continue;
+    const double u = highest > lowest ? (x[up] - lowest) / (highest - lowest) : 0;
+    start.temperature.push_back(
+        body.temperature.value_or((1 - u) * fluid.heat->initial_bottom + u * fluid.heat->initial_top));
+  }
+  return start;
+}
+
+template <int Dim>
+std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing) {
+  std::vector<Wall<Dim>> walls;
+  for (const Boundary& boundary : scene.boundaries) {
+    Wall<Dim> wall;
+    wall.response = {boundary.restitution, boundary.slip};
+    if (boundary.shape.plane) {
+      wall.is_plane = true;
+      for (int d = 0; d < Dim; ++d) {
+        wall.plane_point[d] = boundary.shape.plane->point[d];
+        wall.plane_normal[d] = boundary.shape.plane->normal[d];
+      }
+      wall.plane_normal.normalize();
+    } else if constexpr (Dim == 3) {
+      TriangleMesh mesh = surface(scene, boundary.shape, spacing, boundary.inside);
+      if (boundary.inside) flip(mesh);
+      wall.vertices = std::move(mesh.vertices);
+      wall.facets = std::move(mesh.triangles);
+    } else {
+      const std::vector<Vec2> line = outline(boundary.shape, facet_edge * spacing);
+      const auto n = static_cast<std::int32_t>(line.size());
+      for (const Vec2& x : line) wall.vertices.push_back(x);
+      for (std::int32_t k = 0; k < n; ++k)
+        boundary.inside ? wall.facets.push_back({k, (k + 1) % n}) : wall.facets.push_back({(k + 1) % n, k});
+    }
+    walls.push_back(std::move(wall));
+  }
+  return walls;
+}
+
+template std::vector<Wall<2>> build_walls(const Scene&, double);
+template std::vector<Wall<3>> build_walls(const Scene&, double);
+
+}  // namespace molten

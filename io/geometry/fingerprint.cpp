@@ -1,0 +1,75 @@
+// The hash that tells whether a run may go on from a checkpoint.
+#include <fmt/format.h>
+
+#include "io/geometry/assemble.h"
+
+namespace molten {
+
+namespace {
+
+/// FNV-1a over numbers' bytes.
+class Hash {
+ public:
+  template <class T>
+  void add(const T* data, std::size_t count) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(data);
+    for (std::size_t k = 0; k < count * sizeof(T); ++k) value_ = (value_ ^ bytes[k]) * 1099511628211ull;
+  }
+  template <class T>
+  void add(const T& number) { add(&number, 1); }
+  std::string text() const { return fmt::format("{:016x}", value_); }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037ull;
+};
+
+template <int Dim>
+void add_walls(Hash& hash, const Scene& scene, double spacing) {
+  for (const Wall<Dim>& wall : build_walls<Dim>(scene, spacing)) {
+    for (const auto& v : wall.vertices) hash.add(v.data(), Dim);
+    for (const auto& f : wall.facets) hash.add(f.data(), Dim);
+    hash.add(wall.plane_point.data(), Dim);
+    hash.add(wall.plane_normal.data(), Dim);
+    hash.add(wall.response.restitution);
+    hash.add(wall.response.slip);
+  }
+}
+
+void add_numerics(Hash& hash, const Numerics& n) {
+  hash.add(static_cast<int>(n.precision));
+  hash.add(static_cast<int>(n.resort));
+  hash.add(static_cast<int>(n.kernel));
+  hash.add(static_cast<int>(n.integrator));
+  hash.add(static_cast<int>(n.state_equation));
+  hash.add(n.xsph ? 1 + static_cast<int>(n.xsph->form) : 0);
+  for (const double number : {n.smoothing_ratio, n.skin, n.gamma, n.sound_speed.value_or(0), n.artificial_viscosity,
+                              n.xsph ? n.xsph->epsilon : 0, n.courant_sound, n.courant_viscous, n.courant_force,
+                              n.courant_conduction, n.fixed_dt.value_or(0)})
+    hash.add(number);
+}
+
+}  // namespace
+
+std::string fingerprint(const Scene& scene, const Start& start) {
+  Hash hash;
+  hash.add(scene.dimensions);
+  hash.add(start.spacing);
+  hash.add(start.position.data(), start.position.size());
+  hash.add(start.velocity.data(), start.velocity.size());
+  hash.add(start.temperature.data(), start.temperature.size());
+  const Rheology& r = scene.fluid.rheology;
+  hash.add(static_cast<int>(r.model));
+  for (const double number : {scene.fluid.density, r.viscosity, r.flow_index, r.jump_number[0], r.jump_number[1],
+                              r.yield_stress, r.consistency, scene.gravity[0], scene.gravity[1], scene.gravity[2]})
+    hash.add(number);
+  if (scene.fluid.heat) {
+    hash.add(scene.fluid.heat->diffusivity);
+    hash.add(scene.fluid.heat->melting_range.value_or(std::array<double, 2>{}).data(), 2);
+  }
+  if (scene.domain) hash.add(scene.domain->min), hash.add(scene.domain->max), hash.add(scene.periodic);
+  scene.dimensions == 2 ? add_walls<2>(hash, scene, start.spacing) : add_walls<3>(hash, scene, start.spacing);
+  add_numerics(hash, scene.numerics);
+  return hash.text();
+}
+
+}  // namespace molten

@@ -1,0 +1,100 @@
+// Particles must not start in walls.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "core/boundary/shapes.h"
+#include "core/error.h"
+#include "core/inside.h"
+#include "io/geometry/assemble.h"
+#include "io/geometry/mesh_file.h"
+#include "io/scene/scene_file.h"
+#include "io/geometry/terrain.h"
+
+namespace molten {
+
+namespace {
+
+using Place3 = std::array<double, 3>;
+using Test = std::function<bool(const Place3&)>;  // true: on the wrong side
+
+bool is_closed(const TriangleMesh& mesh) {
+  const MeshReport r = inspect(mesh);
+  return r.open_edges + r.flipped_edges == 0;
+}
+
+Test test_of_plane(const Plane& plane, int dimensions) {
+  return [plane, dimensions](const Place3& x) {
+    double side = 0;
+    for (int d = 0; d < dimensions; ++d) side += (x[d] - plane.point[d]) * plane.normal[d];
+    return side < 0;
+  };
+}
+
+Test test_of_terrain(const Scene& scene, const Terrain& terrain) {
+  return [grid = read_terrain(terrain, locate(scene, terrain.path))](const Place3& x) {
+    const double c = (x[0] - grid.origin[0]) / grid.cell_size, r = (x[1] - grid.origin[1]) / grid.cell_size;
+    if (c < 0 || r < 0 || c >= grid.columns - 1 || r >= grid.rows - 1) return false;
+    const int i = static_cast<int>(c), j = static_cast<int>(r);
+    // Below all four corners is under the ground whichever way the cell is cut; the surface itself is the contact's.
+    return x[2] < std::min({grid.at(i, j), grid.at(i + 1, j), grid.at(i, j + 1), grid.at(i + 1, j + 1)});
+  };
+}
+
+Test test_of_closed(const Scene& scene, const Boundary& boundary, double spacing) {
+  std::shared_ptr<const Inside> inside;
+  if (scene.dimensions == 2) {
+    inside = inside_of(outline(boundary.shape, spacing));
+  } else {
+    const TriangleMesh mesh = surface(scene, boundary.shape, spacing, boundary.inside);
+    if (!is_closed(mesh)) return [](const Place3&) { return false; };
+    inside = inside_of(mesh);
+  }
+  return [inside, container = boundary.inside, d = scene.dimensions - 1](const Place3& x) {
+    std::vector<Span> spans;
+    inside->spans(x[0], x[1], spans);
+    const bool within = std::any_of(spans.begin(), spans.end(), [&](const Span& s) { return x[d] > s.low && x[d] < s.high; });
+    return within != container;
+  };
+}
+
+std::vector<Test> tests_of(const Scene& scene, double spacing) {
+  std::vector<Test> tests;
+  for (const Boundary& boundary : scene.boundaries) {
+    if (boundary.shape.plane) tests.push_back(test_of_plane(*boundary.shape.plane, scene.dimensions));
+    else if (boundary.shape.terrain) tests.push_back(test_of_terrain(scene, *boundary.shape.terrain));
+    else tests.push_back(test_of_closed(scene, boundary, spacing));
+  }
+  return tests;
+}
+
+}  // namespace
+
+template <int Dim>
+void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
+  if (contact.empty()) return;
+  const double nearest = 0.01 * start.spacing;  // to a wall, m; contact moves those in front of it out to their radius
+  const std::vector<Test> tests = tests_of(scene, start.spacing);
+  std::size_t inside = 0;
+  Place3 first{};
+  for (const Place3& x : start.position) {
+    Point<Dim> point;
+    for (int d = 0; d < Dim; ++d) point[d] = x[d];
+    const bool wrong = std::any_of(tests.begin(), tests.end(), [&](const Test& t) { return t(x); }) ||
+                       (contact.may_touch(point, 0) && contact.signed_distance(point, start.spacing) < nearest);
+    if (wrong && inside++ == 0) first = x;
+  }
+  if (inside > 0)
+    throw Error(ExitCode::geometry,
+                fmt::format("{}: {} of {} particles start inside a wall, the first at ({:.6g}, {:.6g}, {:.6g}) m; "
+                            "move the fluid at least half a spacing ({:.3g} m) away from the walls",
+                            scene.file, inside, start.position.size(), first[0], first[1], first[2], start.spacing / 2));
+}
+
+template void require_no_overlap(const Scene&, const Start&, const Contact<2>&);
+template void require_no_overlap(const Scene&, const Start&, const Contact<3>&);
+
+}  // namespace molten

@@ -1,0 +1,56 @@
+#include "io/program/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+
+namespace molten {
+
+namespace {
+constexpr double terminal_interval = 0.3, plain_interval = 5;  // s
+
+double since(std::chrono::steady_clock::time_point t) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
+}
+}  // namespace
+
+std::string in_words(double seconds) {
+  const auto s = static_cast<long long>(std::ceil(std::max(0.0, std::min(seconds, 1e9))));
+  if (s >= 3600) return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+  if (s >= 60) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  return fmt::format("{} s", s);
+}
+
+Progress::Progress(double start_time, double end_time, double initial_energy)
+    : start_time_(start_time),
+      end_time_(end_time),
+      initial_energy_(initial_energy),
+      terminal_(isatty(STDERR_FILENO)),
+      begun_(std::chrono::steady_clock::now()),
+      last_(begun_) {}
+
+bool Progress::is_due() const { return since(last_) > (terminal_ ? terminal_interval : plain_interval); }
+
+void Progress::show(const Clock& clock, std::int64_t particles, double energy) {
+  const double lap = since(last_), done = clock.time - start_time_, all = end_time_ - start_time_;
+  const double rate = last_step_ < 0 ? 0 : static_cast<double>((clock.step - last_step_) * particles) / lap;
+  const double left = done > 0 ? since(begun_) * (all - done) / done : 0;
+  const double drift = initial_energy_ != 0 ? 100 * (energy - initial_energy_) / std::abs(initial_energy_) : 0;
+  std::string line = fmt::format("{:5.1f} %  t {:.4g} of {:.4g} s  step {}  dt {:.3g} s ({})  {} particles  energy {:+.2f} %",
+                                 all > 0 ? 100 * done / all : 100, clock.time, end_time_, clock.step, clock.dt,
+                                 name_of(clock.limit), particles, drift);
+  if (rate > 0) line += fmt::format("  {:.2f} M particle-steps/s", rate / 1e6);
+  if (done > 0) line += fmt::format("  {} left", in_words(left));
+  fmt::print(stderr, "{}{}{}", terminal_ ? "\r\x1b[K" : "", line, terminal_ ? "" : "\n");
+  std::fflush(stderr);
+  shown_ = true;
+  last_ = std::chrono::steady_clock::now();
+  last_step_ = clock.step;
+}
+
+void Progress::finish() {
+  if (terminal_ && shown_) fmt::print(stderr, "\n");
+}
+
+}  // namespace molten

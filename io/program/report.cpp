@@ -1,0 +1,114 @@
+#include "io/program/report.h"
+
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "io/scene/scene_file.h"
+#include "version.h"
+
+namespace molten {
+
+namespace {
+
+void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
+  const std::filesystem::path part = file.string() + ".tmp";
+  {
+    std::ofstream out(part);
+    out << json.dump(2) << '\n';
+    if (!out.flush()) throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
+  }
+  std::filesystem::rename(part, file);
+}
+
+/// FNV-1a of a file's bytes.
+std::string hash_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return "";
+  std::uint64_t hash = 14695981039346656037ull;
+  for (char c; in.get(c);) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+nlohmann::ordered_json files_of(const Scene& scene) {
+  nlohmann::ordered_json files = nlohmann::ordered_json::array();
+  const auto add = [&](const Shape& shape) {
+    const std::string path = shape.mesh ? shape.mesh->path : shape.terrain ? shape.terrain->path : "";
+    if (!path.empty()) files.push_back({{"path", path}, {"hash", hash_of(locate(scene, path))}});
+  };
+  for (const Body& body : scene.fluid.bodies) add(body.shape);
+  for (const Boundary& boundary : scene.boundaries) add(boundary.shape);
+  return files;
+}
+
+}  // namespace
+
+std::size_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string compiler_name() {
+#if defined(__clang__)
+  return std::string("clang ") + __clang_version__;
+#else
+  return std::string("g++ ") + __VERSION__;
+#endif
+}
+
+std::string cpu_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+void write_summary(const std::filesystem::path& folder, const Summary& s) {
+  const double per_second = s.wall_time_s > 0 ? 1 / s.wall_time_s : 0;
+  write_json(folder / "summary.json", {{"status", s.status},
+                                       {"particles", s.particles},
+                                       {"particles_lost", s.particles_lost},
+                                       {"steps", s.steps},
+                                       {"simulated_time_s", s.simulated_time_s},
+                                       {"wall_time_s", s.wall_time_s},
+                                       {"particle_steps_per_second", s.particle_steps * per_second},
+                                       {"pairs_per_second", s.pairs * per_second},
+                                       {"threads", s.threads},
+                                       {"state_bytes", s.state_bytes},
+                                       {"peak_memory_bytes", peak_memory_bytes()},
+                                       {"passes", s.passes}});
+}
+
+void write_manifest(const std::filesystem::path& folder, const Scene& scene, const Features& features,
+                    const std::string& fingerprint) {
+  write_json(folder / "manifest.json",
+             {{"title", scene.title},
+              {"scene", std::filesystem::absolute(scene.file).string()},
+              {"files", files_of(scene)},
+              {"fingerprint", fingerprint},
+              {"dimensions", scene.dimensions},
+              {"precision", scene.numerics.precision == Precision::single ? "single" : "double"},
+              {"features", features.names()},
+              {"passes", features.passes()},
+              {"version", MOLTEN_VERSION},
+              {"commit", MOLTEN_COMMIT},
+              {"build", MOLTEN_FLAGS},
+              {"compiler", compiler_name()},
+              {"cpu", cpu_name()},
+              {"threads", omp_get_max_threads()}});
+}
+
+std::string scene_file_of(const std::filesystem::path& folder) {
+  std::ifstream in(folder / "manifest.json");
+  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  const auto fallback = (folder / "scene.toml").string();
+  return json.is_object() ? json.value("scene", fallback) : fallback;
+}
+
+}  // namespace molten

@@ -1,0 +1,325 @@
+#include "io/program/run.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "core/diagnostics.h"
+#include "core/step.h"
+#include "io/geometry/assemble.h"
+#include "io/hdf5/checkpoint.h"
+#include "io/hdf5/frames.h"
+#include "io/geometry/obj_file.h"
+#include "io/program/progress.h"
+#include "io/program/report.h"
+#include "io/scene/scene_file.h"
+#include "io/program/series.h"
+#include "io/program/signals.h"
+#include "version.h"
+
+namespace molten {
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point t) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
+}
+
+/// What a run keeps beside its state: where its output stands and what has been spent so far.
+struct Ledger {
+  std::int64_t frame_number = 0;  // of the next frame's file
+  double initial_energy = 0, stepping_seconds = 0, particle_steps = 0, pairs_at_start = 0;
+
+  void archive(Archive& a) {
+    a.value("run/frame_number", frame_number);
+    a.value("run/initial_energy", initial_energy);
+    a.value("run/stepping_seconds", stepping_seconds);
+    a.value("run/particle_steps", particle_steps);
+    a.value("run/pairs_at_start", pairs_at_start);
+  }
+};
+
+/// One run in its folder: steps, and writes what is due between them.
+template <int Dim, class Real>
+class Runner {
+ public:
+  Runner(const Scene& scene, const std::filesystem::path& folder, State<Dim, Real> state, std::string fingerprint)
+      : scene_(scene), folder_(folder), state_(std::move(state)), fingerprint_(std::move(fingerprint)) {}
+
+  void restore(const std::filesystem::path& checkpoint) {
+    read_checkpoint(checkpoint, [this](Archive& a) { archive(a); });
+    drop_frames_from(folder_, static_cast<int>(ledger_.frame_number));
+    if (ledger_.frame_number > 0) last_frame_ = list_frames(folder_).back().time;
+    schedule();
+    fresh_ = false;
+  }
+
+  ExitCode run() {
+    begin();
+    ExitCode code = ExitCode::done;
+    try {
+      while (!is_over()) {
+        if (stop_requested()) {
+          code = ExitCode::interrupted;
+          break;
+        }
+        advance();
+      }
+    } catch (const Error& e) {
+      if (e.code() == ExitCode::diverged) report_divergence(e);
+      throw;
+    }
+    finish(code);
+    return code;
+  }
+
+ private:
+  void begin() {
+    series_.emplace(folder_ / "series.csv", fresh_ ? -1 : state_.clock.step);
+    if (fresh_) {
+      const Diagnostics d = diagnose(state_);
+      ledger_.initial_energy = d.kinetic_energy + d.potential_energy;
+      ledger_.pairs_at_start = static_cast<double>(count_pairs(state_));
+      write_row(d);
+      if (scene_.output.frames_per_second > 0) write_snapshot();
+      schedule();
+      checkpoint();
+    }
+    progress_.emplace(state_.clock.time, scene_.run.end_time, ledger_.initial_energy);
+    last_checkpoint_ = std::chrono::steady_clock::now();
+  }
+
+  bool is_over() const {
+    return state_.clock.time >= scene_.run.end_time * (1 - 1e-12) ||
+           (scene_.run.max_steps && state_.clock.step >= *scene_.run.max_steps);
+  }
+
+  /// Sets the times (s) of the next frame and row: the next multiples of their intervals. Steps end on frames' times
+  /// alone, so a stop and a resume leave no trace.
+  void schedule() {
+    const double fps = scene_.output.frames_per_second, every = scene_.output.series_every, time = state_.clock.time;
+    const auto next = [time](auto&& at) {
+      auto k = static_cast<std::int64_t>(time / at(1));
+      while (at(static_cast<double>(k)) <= time) ++k;
+      return at(static_cast<double>(k));
+    };
+    state_.clock.stop = fps > 0 ? next([fps](double k) { return k / fps; }) : 1e300;
+    next_row_ = every > 0 ? next([every](double k) { return k * every; }) : 1e300;
+  }
+
+  void advance() {
+    const auto start = std::chrono::steady_clock::now();
+    step(state_);
+    ledger_.stepping_seconds += seconds_since(start);
+    ledger_.particle_steps += static_cast<double>(state_.particles.count());
+    write_due();
+    if (scene_.output.checkpoint_every > 0 && seconds_since(last_checkpoint_) > scene_.output.checkpoint_every) checkpoint();
+    if (progress_->is_due()) show_progress();
+  }
+
+  void write_due() {
+    const bool frame_due = state_.clock.time >= state_.clock.stop;
+    if (!frame_due && state_.clock.time < next_row_) return;
+    const auto scope = state_.timer.scope("output");
+    write_row(diagnose(state_));
+    if (frame_due) write_snapshot();
+    schedule();
+  }
+
+  void write_row(const Diagnostics& d) { series_->add(state_.clock, d); }
+
+  void write_snapshot() {
+    write_frame(folder_, static_cast<int>(ledger_.frame_number++), take_snapshot(state_, scene_.output.fields));
+    last_frame_ = state_.clock.time;
+  }
+
+  void checkpoint() {
+    const auto scope = state_.timer.scope("checkpoint");
+    const CheckpointHead head{state_.clock.step, state_.clock.time, scene_.text, fingerprint_, MOLTEN_VERSION};
+    write_checkpoint(folder_, head, [this](Archive& a) { archive(a); }, scene_.output.checkpoints_kept);
+    last_checkpoint_ = std::chrono::steady_clock::now();
+  }
+
+  void archive(Archive& a) {
+    ledger_.archive(a);
+    state_.archive(a);
+  }
+
+  void show_progress() {
+    const Diagnostics d = diagnose(state_);
+    progress_->show(state_.clock, d.particles, d.kinetic_energy + d.potential_energy);
+  }
+
+  void finish(ExitCode code) {
+    show_progress();
+    progress_->finish();
+    checkpoint();
+    // The last state is worth a frame even between frame times; a resume drops it again.
+    if (code == ExitCode::done && scene_.output.frames_per_second > 0 && state_.clock.time > last_frame_) write_snapshot();
+    summarise(code == ExitCode::done ? "done" : "interrupted");
+    if (code == ExitCode::interrupted)
+      fmt::print(stderr, "stopped at t = {:.6g} s, step {}; go on with: molten resume {}\n", state_.clock.time,
+                 state_.clock.step, folder_.string());
+  }
+
+  void summarise(const std::string& status) {
+    Summary s;
+    s.status = status;
+    s.particles = static_cast<std::int64_t>(state_.particles.count());
+    s.particles_lost = static_cast<std::int64_t>(state_.neighbours.dropped());
+    s.steps = state_.clock.step;
+    s.simulated_time_s = state_.clock.time;
+    s.wall_time_s = ledger_.stepping_seconds;
+    s.particle_steps = ledger_.particle_steps;
+    const double pairs_a_step = (ledger_.pairs_at_start + static_cast<double>(count_pairs(state_))) / 2;
+    s.pairs = pairs_a_step * static_cast<double>(state_.clock.step);
+    s.threads = omp_get_max_threads();
+    s.state_bytes = state_.bytes();
+    s.passes = state_.timer.seconds();
+    write_summary(folder_, s);
+  }
+
+  void report_divergence(const Error& e) {
+    progress_->finish();
+    summarise("diverged");
+    const auto files = list_checkpoints(folder_);
+    throw Error(ExitCode::diverged,
+                fmt::format("step {}, t = {:.6g} s: {}{}", state_.clock.step, state_.clock.time, e.what(),
+                            files.empty() ? "" : "; the last good checkpoint is " + files.front().string()));
+  }
+
+  Scene scene_;
+  std::filesystem::path folder_;
+  State<Dim, Real> state_;
+  std::string fingerprint_;
+  Ledger ledger_;
+  bool fresh_ = true;
+  double next_row_ = 0, last_frame_ = -1;  // s
+  std::optional<Series> series_;
+  std::optional<Progress> progress_;
+  std::chrono::steady_clock::time_point last_checkpoint_;
+};
+
+/// A run's state and what else its folder holds, ready to step.
+template <int Dim, class Real>
+Runner<Dim, Real> prepare_run(const Scene& scene, const std::filesystem::path& folder, const Features& features,
+                              const Start& start) {
+  const Parameters<Dim> parameters = parameters_of<Dim>(scene, start);
+  Contact<Dim> contact(build_walls<Dim>(scene, start.spacing), start.spacing / 2, parameters.support_radius);
+  require_no_overlap(scene, start, contact);
+  return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(contact), start),
+                           fingerprint(scene, start));
+}
+
+/// Calls f.template operator()<Dim, Real>() for the scene's dimensions and precision.
+template <class F>
+ExitCode dispatch(const Scene& scene, F&& f) {
+  const bool single = scene.numerics.precision == Precision::single;
+  if (scene.dimensions == 2) return single ? f.template operator()<2, float>() : f.template operator()<2, double>();
+  return single ? f.template operator()<3, float>() : f.template operator()<3, double>();
+}
+
+void make_folder(const std::filesystem::path& folder, bool overwrite) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const bool holds_run = fs::exists(folder / "manifest.json", error) || fs::exists(folder / "checkpoints", error);
+  if (holds_run && !overwrite)
+    throw Error(ExitCode::files, folder.string() + ": already holds a run; go on with `molten resume " + folder.string() +
+                                     "`, choose another folder with -o, or replace it with --overwrite");
+  if (holds_run)
+    for (const char* name : {"frames", "checkpoints", "frames.hdf.series", "series.csv", "summary.json", "manifest.json",
+                             "scene.toml", "walls.obj", "pictures"})
+      fs::remove_all(folder / name, error);
+  fs::create_directories(folder, error);
+  if (error) throw Error(ExitCode::files, folder.string() + ": cannot create the output folder: " + error.message());
+  std::ofstream probe(folder / "scene.toml");
+  if (!probe)
+    throw Error(ExitCode::files, folder.string() + ": the output folder is not writable; choose another with -o");
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw Error(ExitCode::files, file.string() + ": cannot write; check the disk");
+}
+
+void set_threads(int threads) {
+  if (threads > 0) omp_set_num_threads(threads);
+}
+
+}  // namespace
+
+ExitCode run_scene(const Scene& scene, const RunOptions& options) {
+  const Features features = features_of(scene);
+  require_fields(features, scene.output.fields);
+  const Start start = fill_bodies(scene, features);  // meshes are read in child processes: before any threads
+  set_threads(options.threads);
+  return dispatch(scene, [&]<int Dim, class Real>() {
+    auto runner = prepare_run<Dim, Real>(scene, options.folder, features, start);
+    make_folder(options.folder, options.overwrite);
+    write_text(options.folder / "scene.toml", scene.text);
+    write_obj(options.folder / "walls.obj", picture_of_walls(scene, start));
+    write_manifest(options.folder, scene, features, fingerprint(scene, start));
+    fmt::print(stderr, "{}: {} particles, spacing {:.4g} m, {}-D, {} precision, {} threads, into {}\n",
+               scene.title.empty() ? scene.file : scene.title, start.position.size(), start.spacing, Dim,
+               sizeof(Real) == 4 ? "single" : "double", omp_get_max_threads(), options.folder.string());
+    catch_stop_signals();
+    return runner.run();
+  });
+}
+
+namespace {
+
+struct Usable {
+  std::filesystem::path file;
+  CheckpointHead head;
+};
+
+/// The newest checkpoint that reads well; tells of those that don't.
+Usable newest_usable(const std::filesystem::path& folder) {
+  std::string reason = folder.string() + ": holds no checkpoint; start it with `molten run`";
+  for (const auto& file : list_checkpoints(folder)) {
+    try {
+      return {file, read_checkpoint_head(file)};
+    } catch (const Error& e) {
+      reason = e.what();
+      fmt::print(stderr, "warning: {}; trying the one before\n", reason);
+    }
+  }
+  throw Error(ExitCode::checkpoint, reason);
+}
+
+}  // namespace
+
+ExitCode resume_run(const ResumeOptions& options) {
+  const Usable checkpoint = newest_usable(options.folder);
+  const std::filesystem::path copy = options.folder / "scene.toml";
+  std::ifstream in(copy, std::ios::binary);
+  const std::string text = in ? std::string(std::istreambuf_iterator<char>(in), {}) : checkpoint.head.scene_text;
+  Scene scene = parse_scene(text, copy.string(), options.overrides);
+  scene.file = scene_file_of(options.folder);
+  const Features features = features_of(scene);
+  require_fields(features, scene.output.fields);
+  const Start start = fill_bodies(scene, features);
+  set_threads(options.threads);
+  const std::string print = fingerprint(scene, start);
+  if (print != checkpoint.head.scene_hash && !options.force)
+    throw Error(ExitCode::checkpoint,
+                options.folder.string() + ": the scene, a mesh or the numerics changed since the checkpoint; only [run] and "
+                                          "[output] may change; undo it or go on all the same with --force");
+  return dispatch(scene, [&]<int Dim, class Real>() {
+    auto runner = prepare_run<Dim, Real>(scene, options.folder, features, start);
+    runner.restore(checkpoint.file);
+    write_text(copy, scene.text);
+    fmt::print(stderr, "resuming {} from t = {:.6g} s, step {}\n", options.folder.string(), checkpoint.head.time,
+               checkpoint.head.step);
+    catch_stop_signals();
+    return runner.run();
+  });
+}
+
+}  // namespace molten

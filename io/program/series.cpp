@@ -1,0 +1,55 @@
+#include "io/program/series.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "core/error.h"
+
+namespace molten {
+
+namespace {
+
+constexpr const char* header =
+    "time_s,step,dt_s,limit,particles,kinetic_energy_J,potential_energy_J,heat_kgK,momentum_x_kgm/s,momentum_y_kgm/s,"
+    "momentum_z_kgm/s,lower_x_m,lower_y_m,lower_z_m,upper_x_m,upper_y_m,upper_z_m,max_speed_m/s,max_compression\n";
+
+/// The rows of an earlier part of the run up to a step.
+std::vector<std::string> rows_until(const std::filesystem::path& file, std::int64_t last_step) {
+  std::vector<std::string> rows;
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    const auto comma = line.find(',');
+    if (comma == std::string::npos || std::atoll(line.c_str() + comma + 1) > last_step) break;
+    rows.push_back(line);
+  }
+  return rows;
+}
+
+}  // namespace
+
+Series::Series(const std::filesystem::path& file, std::int64_t keep_until_step) : file_(file) {
+  const std::vector<std::string> kept = keep_until_step >= 0 ? rows_until(file, keep_until_step) : std::vector<std::string>{};
+  const std::filesystem::path part = file.string() + ".tmp";
+  {
+    std::ofstream fresh(part, std::ios::trunc);
+    fresh << header;
+    for (const std::string& row : kept) fresh << row << '\n';
+    if (!fresh.flush()) throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
+  }
+  std::filesystem::rename(part, file);
+  out_.open(file, std::ios::app);
+}
+
+void Series::add(const Clock& c, const Diagnostics& d) {
+  out_ << fmt::format("{:.9g},{},{:.6g},{},{},{:.9g},{:.9g},{:.12g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},"
+                      "{:.6g},{:.6g},{:.6g}\n",
+                      c.time, c.step, c.dt, name_of(c.limit), d.particles, d.kinetic_energy, d.potential_energy, d.heat,
+                      d.momentum[0], d.momentum[1], d.momentum[2], d.lower[0], d.lower[1], d.lower[2], d.upper[0], d.upper[1],
+                      d.upper[2], d.max_speed, d.max_compression);
+  if (!out_.flush()) throw Error(ExitCode::files, file_.string() + ": cannot write; check the disk");
+}
+
+}  // namespace molten

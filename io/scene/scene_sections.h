@@ -1,0 +1,12 @@
+// The sections of a scene file whose reading takes more than a few lines. Each throws Error(usage).
+#pragma once
+
+#include "core/scene.h"
+#include "io/scene/toml_reader.h"
+
+namespace molten {
+
+Fluid read_fluid(const TomlReader& root, int dimensions);
+Numerics read_numerics(const TomlReader& root);
+
+}  // namespace molten

@@ -1,0 +1,22 @@
+// Shapes of a scene file: the one shape key of a [fluid], [[fluid.body]] or [[boundary]] table.
+#pragma once
+
+#include "core/scene.h"
+#include "io/scene/toml_reader.h"
+
+namespace molten {
+
+/// `keys` and those that read_shape understands.
+TomlReader::Keys with_shape_keys(TomlReader::Keys keys);
+
+bool has_shape(const TomlReader& table);
+
+enum class ShapeUse { fluid, boundary };
+
+/// Throws Error(usage) unless the table has exactly one shape, and one that `use` and the dimensions allow.
+Shape read_shape(const TomlReader& table, int dimensions, ShapeUse use);
+
+/// A box { min, max }, also the scene's domain.
+Box read_box(const TomlReader& table, std::string_view key, int dimensions);
+
+}  // namespace molten
