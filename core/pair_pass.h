@@ -8,7 +8,7 @@
 //     using Radial = FieldList<>;                            // those of Sums to which it adds along x_ij, if any
 //     bool on = true;                                        // the same for the whole pass; off adds nothing
 //     template <class Pair, class I, class J, class Out>
-//     void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
+//     [[gnu::always_inline]] void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
 //       out.gradW(compression_rate, dot(i[velocity] - j[velocity], ij.x));   // adds m_j (v_ij · x_ij) W'/r
 //     }
 //   };
@@ -103,26 +103,26 @@ struct Out {
 
   /// Adds m_j W'/r · v
   template <class F>
-  void gradW(F, const value_t<F, Dim, L>& v) {
+  [[gnu::always_inline]] void gradW(F, const value_t<F, Dim, L>& v) {
     unrolled<components<F, Dim>>([&](auto k) { component(sums[F{}], k) += kernel.slope * component(v, k); });
   }
   /// Adds m_j ∇W · s to a vector.
   template <class F>
-  void along(F, const L& s) {
+  [[gnu::always_inline]] void along(F, const L& s) {
     radial[F{}][0] += s;
   }
   /// Adds m_j W · v
   template <class F>
-  void W(F, const value_t<F, Dim, L>& v) {
+  [[gnu::always_inline]] void W(F, const value_t<F, Dim, L>& v) {
     unrolled<components<F, Dim>>([&](auto k) { component(sums[F{}], k) += kernel.w * component(v, k); });
   }
 
   template <class... F>
-  void add_radial(FieldList<F...>, const Vec<Dim, L>& x) {
+  [[gnu::always_inline]] void add_radial(FieldList<F...>, const Vec<Dim, L>& x) {
     (add_radial(F{}, x), ...);
   }
   template <class F>
-  void add_radial(F, const Vec<Dim, L>& x) {
+  [[gnu::always_inline]] void add_radial(F, const Vec<Dim, L>& x) {
     const L s = kernel.slope * radial[F{}][0];
     unrolled<Dim>([&](auto d) { sums[F{}][d] += s * x[d]; });
   }

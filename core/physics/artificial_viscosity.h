@@ -22,7 +22,7 @@ struct ArtificialViscosity {
         softening(Real(0.01 * smoothing_length * smoothing_length)) {}
 
   template <class Pair, class I, class J, class Out>
-  void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
+  [[gnu::always_inline]] void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
     using L = decltype(ij.r2);
     const L approach = min(dot(i[velocity] - j[velocity], ij.x), L(0));
     // 2 ρ̄/ρ0 over the strength; grouped so that i's share is worked out once

@@ -11,7 +11,7 @@ struct Continuity {
   static constexpr bool on = true;
 
   template <class Pair, class I, class J, class Out>
-  void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
+  [[gnu::always_inline]] void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
     out.gradW(compression_rate, dot(i[velocity] - j[velocity], ij.x));
   }
 };

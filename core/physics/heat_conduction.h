@@ -20,7 +20,7 @@ struct HeatConduction {
       : on(diffusivity > 0), strength(Real(4 * diffusivity / rest_density)) {}
 
   template <class Pair, class I, class J, class Out>
-  void operator()(const Pair&, const I& i, const J& j, Out& out) const {
+  [[gnu::always_inline]] void operator()(const Pair&, const I& i, const J& j, Out& out) const {
     using L = std::decay_t<decltype(i[compression])>;
     const L twice_density = L(2) + i[compression] + j[compression];
     out.gradW(temperature_rate,

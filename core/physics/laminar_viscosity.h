@@ -19,7 +19,7 @@ struct LaminarViscosity {
       : on(viscosity > 0), strength(Real(2 * viscosity / (rest_density * rest_density))) {}
 
   template <class Pair, class I, class J, class Out>
-  void operator()(const Pair&, const I& i, const J& j, Out& out) const {
+  [[gnu::always_inline]] void operator()(const Pair&, const I& i, const J& j, Out& out) const {
     using L = std::decay_t<decltype(i[compression])>;
     const L inverse = reciprocal((L(1) + i[compression]) * (L(1) + j[compression]));
     out.gradW(acceleration, (L(strength) * inverse) * (i[velocity] - j[velocity]));

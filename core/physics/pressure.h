@@ -15,7 +15,7 @@ struct PressureForce {
   static constexpr bool on = true;
 
   template <class Pair, class I, class J, class Out>
-  void operator()(const Pair&, const I& i, const J& j, Out& out) const {
+  [[gnu::always_inline]] void operator()(const Pair&, const I& i, const J& j, Out& out) const {
     out.along(acceleration, -i[pressure_term] - j[pressure_term]);
   }
 };

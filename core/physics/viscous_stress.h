@@ -17,7 +17,7 @@ struct StrainRateTerm {
   static constexpr bool on = true;
 
   template <class Pair, class I, class J, class Out>
-  void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
+  [[gnu::always_inline]] void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
     using L = std::decay_t<decltype(i[compression])>;
     const L volume = reciprocal(L(1) + j[compression]);  // V_j ρ0/m
     out.gradW(strain_rate, twice_symmetric(volume * (j[velocity] - i[velocity]), ij.x));
@@ -40,7 +40,7 @@ struct StressForce {
   StressForce(bool present, double rest_density) : on(present), density2(Real(rest_density * rest_density)) {}
 
   template <class Pair, class I, class J, class Out>
-  void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
+  [[gnu::always_inline]] void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
     using L = decltype(ij.r2);
     const Vec<Dim, L> force_i = i[stress] * ij.x, force_j = j[stress] * ij.x;  // η D·x/ρ² of each
     out.gradW(acceleration, force_i + force_j);

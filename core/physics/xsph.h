@@ -19,7 +19,7 @@ struct XsphTerm {
   XsphTerm(bool on_, double rest_density) : on(on_), strength(Real(2 / rest_density)) {}
 
   template <class Pair, class I, class J, class Out>
-  void operator()(const Pair&, const I& i, const J& j, Out& out) const {
+  [[gnu::always_inline]] void operator()(const Pair&, const I& i, const J& j, Out& out) const {
     using L = std::decay_t<decltype(i[compression])>;
     const L twice_density = L(2) + i[compression] + j[compression];
     out.W(xsph_velocity, (L(strength) * reciprocal(twice_density)) * (j[velocity] - i[velocity]));
