@@ -49,6 +49,7 @@ template <int Dim, class Real> State<Dim, Real> full_state(KernelKind kernel, bo
     for (int d = 0; d < Dim; ++d) s.particles[velocity][d][k] = Real(of(random));
     for (int c = 0; c < Dim * (Dim + 1) / 2; ++c) s.particles[stress][c][k] = Real(1e-3 * of(random));
     s.particles[compression][0][k] = Real(0.05 * of(random));
+    s.particles[viscosity][0][k] = Real(50 + 40 * of(random));
     s.particles[temperature][0][k] = 20 + 10 * of(random);
   });
   prepare(s);
@@ -97,7 +98,10 @@ template <int Dim, class Real> class Twin {
       const int k = SymTensor<Dim, double>::index(a, b);
       return double(p_[stress][k][i]) + p_[stress][k][j];
     };
+    const double rest = damped_approach(i, j, x, vx), eta_i = p_[viscosity][0][i], eta_j = p_[viscosity][0][j];
+    const double damping = 2 * (Dim + 2) * 2 * eta_i * eta_j / (eta_i + eta_j) * rest / (rho_i * rho_j * r * r);
     for (int a = 0; a < Dim; ++a) {
+      sums.add(a, damping * mF * x[a]);
       sums.add(a, -(pressure + pi_ij) * mF * x[a]);
       sums.add(a, 2 * viscosity_of_all / (rho_i * rho_j) * mF * v[a]);
       sums.add(xsph_at + a, -2 / (rho_i + rho_j) * v[a] * mW);
@@ -109,6 +113,17 @@ template <int Dim, class Real> class Twin {
     sums.add(compression_at, mF * vx);
     const double dT = double(p_[local_temperature][0][i]) - p_[local_temperature][0][j];
     sums.add(temperature_at, 4 * diffusivity_of_all / (rho_i + rho_j) * dT * mF);
+  }
+
+  /// v·x − ¼ x·(D_i + D_j)·x, with D = ρ²/η of the kept stress.
+  double damped_approach(std::size_t i, std::size_t j, const std::array<double, Dim>& x, double vx) const {
+    double rest = vx;
+    for (const std::size_t k : {i, j})
+      for (int a = 0; a < Dim; ++a)
+        for (int b = 0; b < Dim; ++b)
+          rest -= 0.25 * density(k) * density(k) / p_[viscosity][0][k] *
+                  p_[stress][SymTensor<Dim, double>::index(a, b)][k] * x[a] * x[b];
+    return rest;
   }
 
   const State<Dim, Real>& s_;
