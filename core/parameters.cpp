@@ -27,11 +27,11 @@ double default_sound_speed(const Scene& scene, const Start& start, const Extent&
   return 10 * std::sqrt(2 * fall + fastest2 + 1e-12);
 }
 
-/// Ten extents of the fluid and the walls' reach beyond: far enough that only what has escaped is dropped.
+/// A hundred extents of the fluid to each side: far enough that only what has escaped is dropped.
 template <int Dim>
-Domain<Dim> domain_of(const Scene& scene, const Extent& extent) {
+Domain<Dim> domain_of(const Scene& scene, const Extent& extent, double spacing) {
   Domain<Dim> domain;
-  double size = 0;
+  double size = 10 * spacing;
   for (int d = 0; d < Dim; ++d) size = std::max(size, extent.upper[d] - extent.lower[d]);
   for (int d = 0; d < Dim; ++d) {
     domain.lower[d] = scene.domain ? scene.domain->min[d] : extent.lower[d] - 100 * size;
@@ -78,7 +78,7 @@ Parameters<Dim> parameters_of(const Scene& scene, const Start& start) {
   p.courant_conduction = n.courant_conduction;
   p.fixed_dt = n.fixed_dt;
   p.sort_each_step = n.resort == Resort::each_step;
-  p.domain = domain_of<Dim>(scene, extent);
+  p.domain = domain_of<Dim>(scene, extent, start.spacing);
   return p;
 }
 

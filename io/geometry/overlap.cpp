@@ -73,8 +73,24 @@ std::vector<Test> tests_of(const Scene& scene, double spacing) {
 
 }  // namespace
 
+namespace {
+
+void require_in_domain(const Scene& scene, const Start& start) {
+  if (!scene.domain) return;
+  for (const Place3& x : start.position)
+    for (int d = 0; d < scene.dimensions; ++d)
+      if (x[d] < scene.domain->min[d] || x[d] > scene.domain->max[d])
+        throw Error(ExitCode::geometry,
+                    fmt::format("{}: scene.domain: fluid starts outside of it, at ({:.6g}, {:.6g}, {:.6g}) m; enlarge the "
+                                "domain or move the fluid",
+                                scene.file, x[0], x[1], x[2]));
+}
+
+}  // namespace
+
 template <int Dim>
 void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
+  require_in_domain(scene, start);
   if (contact.empty()) return;
   const double nearest = 0.01 * start.spacing;  // to a wall, m; contact moves those in front of it out to their radius
   const std::vector<Test> tests = tests_of(scene, start.spacing);

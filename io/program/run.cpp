@@ -32,10 +32,12 @@ double seconds_since(std::chrono::steady_clock::time_point t) {
 /// What a run keeps beside its state: where its output stands and what has been spent so far.
 struct Ledger {
   std::int64_t frame_number = 0;  // of the next frame's file
+  std::int64_t rows = 0;          // of series.csv
   double initial_energy = 0, stepping_seconds = 0, particle_steps = 0, pairs_at_start = 0;
 
   void archive(Archive& a) {
     a.value("run/frame_number", frame_number);
+    a.value("run/rows", rows);
     a.value("run/initial_energy", initial_energy);
     a.value("run/stepping_seconds", stepping_seconds);
     a.value("run/particle_steps", particle_steps);
@@ -53,6 +55,7 @@ class Runner {
   void restore(const std::filesystem::path& checkpoint) {
     read_checkpoint(checkpoint, [this](Archive& a) { archive(a); });
     drop_frames_from(folder_, static_cast<int>(ledger_.frame_number));
+    last_row_step_ = state_.clock.step;
     if (ledger_.frame_number > 0) last_frame_ = list_frames(folder_).back().time;
     schedule();
     fresh_ = false;
@@ -79,7 +82,7 @@ class Runner {
 
  private:
   void begin() {
-    series_.emplace(folder_ / "series.csv", fresh_ ? -1 : state_.clock.step);
+    series_.emplace(folder_ / "series.csv", fresh_ ? 0 : ledger_.rows);
     if (fresh_) {
       const Diagnostics d = diagnose(state_);
       ledger_.initial_energy = d.kinetic_energy + d.potential_energy;
@@ -98,22 +101,25 @@ class Runner {
            (scene_.run.max_steps && state_.clock.step >= *scene_.run.max_steps);
   }
 
+  /// The first multiple of an interval (s) after a time.
+  static double next_multiple(double interval, double time) {
+    const double next = (std::floor(time / interval) + 1) * interval;
+    return next > time ? next : next + interval;
+  }
+
   /// Sets the times (s) of the next frame and row: the next multiples of their intervals. Steps end on frames' times
   /// alone, so a stop and a resume leave no trace.
   void schedule() {
-    const double fps = scene_.output.frames_per_second, every = scene_.output.series_every, time = state_.clock.time;
-    const auto next = [time](auto&& at) {
-      auto k = static_cast<std::int64_t>(time / at(1));
-      while (at(static_cast<double>(k)) <= time) ++k;
-      return at(static_cast<double>(k));
-    };
-    state_.clock.stop = fps > 0 ? next([fps](double k) { return k / fps; }) : 1e300;
-    next_row_ = every > 0 ? next([every](double k) { return k * every; }) : 1e300;
+    const double fps = scene_.output.frames_per_second, every = scene_.output.series_every;
+    state_.clock.stop = fps > 0 ? next_multiple(1 / fps, state_.clock.time) : 1e300;
+    next_row_ = every > 0 ? next_multiple(every, state_.clock.time) : 1e300;
   }
 
   void advance() {
     const auto start = std::chrono::steady_clock::now();
     step(state_);
+    if (state_.particles.count() == 0)
+      throw Error(ExitCode::diverged, "all particles have left the domain; enlarge scene.domain or add walls");
     ledger_.stepping_seconds += seconds_since(start);
     ledger_.particle_steps += static_cast<double>(state_.particles.count());
     write_due();
@@ -130,7 +136,11 @@ class Runner {
     schedule();
   }
 
-  void write_row(const Diagnostics& d) { series_->add(state_.clock, d); }
+  void write_row(const Diagnostics& d) {
+    series_->add(state_.clock, d);
+    ++ledger_.rows;
+    last_row_step_ = state_.clock.step;
+  }
 
   void write_snapshot() {
     write_frame(folder_, static_cast<int>(ledger_.frame_number++), take_snapshot(state_, scene_.output.fields));
@@ -158,8 +168,11 @@ class Runner {
     show_progress();
     progress_->finish();
     checkpoint();
-    // The last state is worth a frame even between frame times; a resume drops it again.
+    // The last state is worth a row and a frame even between their times; a resume drops them again.
+    if (code == ExitCode::done && state_.clock.step > last_row_step_) write_row(diagnose(state_));
     if (code == ExitCode::done && scene_.output.frames_per_second > 0 && state_.clock.time > last_frame_) write_snapshot();
+    if (state_.neighbours.dropped() > 0)
+      fmt::print(stderr, "note: {} particles have left the domain\n", state_.neighbours.dropped());
     summarise(code == ExitCode::done ? "done" : "interrupted");
     if (code == ExitCode::interrupted)
       fmt::print(stderr, "stopped at t = {:.6g} s, step {}; go on with: molten resume {}\n", state_.clock.time,
@@ -199,6 +212,7 @@ class Runner {
   Ledger ledger_;
   bool fresh_ = true;
   double next_row_ = 0, last_frame_ = -1;  // s
+  std::int64_t last_row_step_ = -1;
   std::optional<Series> series_;
   std::optional<Progress> progress_;
   std::chrono::steady_clock::time_point last_checkpoint_;

@@ -14,24 +14,19 @@ constexpr const char* header =
     "time_s,step,dt_s,limit,particles,kinetic_energy_J,potential_energy_J,heat_kgK,momentum_x_kgm/s,momentum_y_kgm/s,"
     "momentum_z_kgm/s,lower_x_m,lower_y_m,lower_z_m,upper_x_m,upper_y_m,upper_z_m,max_speed_m/s,max_compression\n";
 
-/// The rows of an earlier part of the run up to a step.
-std::vector<std::string> rows_until(const std::filesystem::path& file, std::int64_t last_step) {
+std::vector<std::string> first_rows(const std::filesystem::path& file, std::int64_t count) {
   std::vector<std::string> rows;
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  while (std::getline(in, line)) {
-    const auto comma = line.find(',');
-    if (comma == std::string::npos || std::atoll(line.c_str() + comma + 1) > last_step) break;
-    rows.push_back(line);
-  }
+  while (static_cast<std::int64_t>(rows.size()) < count && std::getline(in, line)) rows.push_back(line);
   return rows;
 }
 
 }  // namespace
 
-Series::Series(const std::filesystem::path& file, std::int64_t keep_until_step) : file_(file) {
-  const std::vector<std::string> kept = keep_until_step >= 0 ? rows_until(file, keep_until_step) : std::vector<std::string>{};
+Series::Series(const std::filesystem::path& file, std::int64_t keep) : file_(file) {
+  const std::vector<std::string> kept = first_rows(file, keep);
   const std::filesystem::path part = file.string() + ".tmp";
   {
     std::ofstream fresh(part, std::ios::trunc);

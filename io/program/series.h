@@ -10,8 +10,8 @@ namespace molten {
 
 class Series {
  public:
-  /// Opens the file; `keep_until_step` >= 0 drops rows of later steps first (resume makes them again).
-  Series(const std::filesystem::path& file, std::int64_t keep_until_step);
+  /// Opens the file with its first `keep` rows; a resume makes the others again.
+  Series(const std::filesystem::path& file, std::int64_t keep);
   /// Throws Error(files) when the disk is full.
   void add(const Clock& clock, const Diagnostics& d);
 
