@@ -15,8 +15,7 @@ namespace molten::bench {
 
 namespace {
 
-template <int Dim, class Real>
-State<Dim, Real> state_of(const Scene& scene, const Start& start) {
+template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Start& start) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
   Contact<Dim> contact(build_walls<Dim>(scene, start.spacing), start.spacing / 2, p.support_radius);
   return make_state<Dim, Real>(features_of(scene), p, std::move(contact), start);
@@ -37,8 +36,7 @@ Scene tank(int dimensions, double smoothing_ratio) {
 
 }  // namespace
 
-template <int Dim, class Real>
-State<Dim, Real> jittered_block(long long count, double smoothing_ratio) {
+template <int Dim, class Real> State<Dim, Real> jittered_block(long long count, double smoothing_ratio) {
   const Scene scene = tank(Dim, smoothing_ratio);
   const auto side = static_cast<int>(std::lround(std::pow(static_cast<double>(count), 1.0 / Dim)));
   Start start;
@@ -57,8 +55,7 @@ State<Dim, Real> jittered_block(long long count, double smoothing_ratio) {
   return state_of<Dim, Real>(scene, start);
 }
 
-template <class Real>
-State<3, Real> bunny() {
+template <class Real> State<3, Real> bunny() {
   const std::filesystem::path source = MOLTEN_SOURCE_DIR;
   std::vector<std::string> overrides;
   if (!std::filesystem::exists(source / "scenes/models/bunny.obj"))
@@ -67,8 +64,7 @@ State<3, Real> bunny() {
   return state_of<3, Real>(scene, fill_bodies(scene, features_of(scene)));
 }
 
-template <int Dim, class Real>
-std::string check_rates(State<Dim, Real>& s) {
+template <int Dim, class Real> std::string check_rates(State<Dim, Real>& s) {
   find_rates(s);
   const Particles<Dim, Real>& p = s.particles;
   const Parameters<Dim>& q = s.parameters;

@@ -10,15 +10,12 @@ namespace molten::bench {
 
 /// A block of water of about `count` particles, each moved at random by up to a tenth of the spacing, in random slow
 /// motion, in a tank three times as long; h = `smoothing_ratio` spacings, c = 10 √(2 g H).
-template <int Dim, class Real>
-State<Dim, Real> jittered_block(long long count, double smoothing_ratio);
+template <int Dim, class Real> State<Dim, Real> jittered_block(long long count, double smoothing_ratio);
 
 /// scenes/bunny.toml as it starts, or a ball of as many particles where the model was not fetched.
-template <class Real>
-State<3, Real> bunny();
+template <class Real> State<3, Real> bunny();
 
 /// Compares the rates of some particles with a brute-force sum in double; returns an empty string or what differs.
-template <int Dim, class Real>
-std::string check_rates(State<Dim, Real>& s);
+template <int Dim, class Real> std::string check_rates(State<Dim, Real>& s);
 
 }  // namespace molten::bench

@@ -17,8 +17,7 @@
 namespace molten::bench {
 namespace {
 
-template <int Dim, class Real>
-void count(benchmark::State& bench, const State<Dim, Real>& s, double pairs) {
+template <int Dim, class Real> void count(benchmark::State& bench, const State<Dim, Real>& s, double pairs) {
   const auto n = static_cast<double>(s.particles.count());
   bench.counters["particle_steps/s"] = benchmark::Counter(n, benchmark::Counter::kIsIterationInvariantRate);
   bench.counters["pairs/s"] = benchmark::Counter(pairs, benchmark::Counter::kIsIterationInvariantRate);
@@ -38,14 +37,16 @@ void time_on(benchmark::State& bench, State<Dim, Real> s, const std::function<vo
 template <int Dim, class Real>
 void add_block(const std::string& name, bool whole_step, long long particles, double smoothing_ratio) {
   const std::string full = name + (sizeof(Real) == 8 ? "/double" : "");
-  benchmark::RegisterBenchmark(full.c_str(), [=](benchmark::State& bench) {
-    time_on<Dim, Real>(bench, jittered_block<Dim, Real>(particles, smoothing_ratio),
-                       whole_step ? step<Dim, Real> : find_rates<Dim, Real>);
-  })->UseRealTime()->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark(full.c_str(),
+                               [=](benchmark::State& bench) {
+                                 time_on<Dim, Real>(bench, jittered_block<Dim, Real>(particles, smoothing_ratio),
+                                                    whole_step ? step<Dim, Real> : find_rates<Dim, Real>);
+                               })
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
 }
 
-template <class Real>
-void add_all() {
+template <class Real> void add_all() {
   constexpr long long k = 1000, M = 1000000;
   add_block<3, Real>("rates/wcsph/3d/1M", false, M, 1.3);
   add_block<3, Real>("step/wcsph/3d/100k", true, 100 * k, 1.3);
@@ -54,9 +55,10 @@ void add_all() {
   add_block<3, Real>("step/wcsph/3d/1M-165", true, M, 1.73);
   add_block<2, Real>("step/wcsph/2d/100k", true, 100 * k, 1.3);
   const std::string bunny_name = std::string("step/smd-heat/bunny") + (sizeof(Real) == 8 ? "/double" : "");
-  benchmark::RegisterBenchmark(bunny_name.c_str(), [](benchmark::State& bench) {
-    time_on<3, Real>(bench, bunny<Real>(), step<3, Real>);
-  })->UseRealTime()->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark(bunny_name.c_str(),
+                               [](benchmark::State& bench) { time_on<3, Real>(bench, bunny<Real>(), step<3, Real>); })
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
 }
 
 /// Names given as they are match as prefixes: they become Google Benchmark's filter.
@@ -65,8 +67,10 @@ std::vector<std::string> with_filter(int argc, char** argv) {
   std::string filter;
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
-    if (word.starts_with("-")) flags.push_back(word);
-    else filter += (filter.empty() ? "^(" : "|") + word;
+    if (word.starts_with("-"))
+      flags.push_back(word);
+    else
+      filter += (filter.empty() ? "^(" : "|") + word;
   }
   if (!filter.empty()) flags.push_back("--benchmark_filter=" + filter + ")");
   return flags;

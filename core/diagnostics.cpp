@@ -12,8 +12,7 @@
 
 namespace molten {
 
-template <int Dim, class Real>
-Diagnostics diagnose(const State<Dim, Real>& s) {
+template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
   const Particles<Dim, Real>& p = s.particles;
   const auto x = p[position];
   const auto v = p[velocity];
@@ -21,34 +20,37 @@ Diagnostics diagnose(const State<Dim, Real>& s) {
   Diagnostics zero;
   zero.lower.fill(std::numeric_limits<double>::max());
   zero.upper.fill(std::numeric_limits<double>::lowest());
-  Diagnostics total = reduce_slots(p.slots(), zero, [&](std::size_t slot, Diagnostics& d) {
-    if (p.is_padding(slot)) return;
-    double v2 = 0;
-    for (int k = 0; k < Dim; ++k) {
-      v2 += double(v[k][slot]) * v[k][slot];
-      d.potential_energy -= m * s.parameters.gravity[k] * x[k][slot];
-      d.momentum[k] += m * v[k][slot];
-      d.lower[k] = std::min(d.lower[k], x[k][slot]);
-      d.upper[k] = std::max(d.upper[k], x[k][slot]);
-    }
-    ++d.particles;
-    d.kinetic_energy += m * v2 / 2;
-    d.max_speed = std::max(d.max_speed, std::sqrt(v2));
-    d.max_compression = std::max(d.max_compression, std::abs(double(p[compression][0][slot])));
-    if (s.features.heat) d.heat += m * p[temperature][0][slot];
-  }, [](Diagnostics& a, const Diagnostics& b) {
-    a.particles += b.particles;
-    a.kinetic_energy += b.kinetic_energy;
-    a.potential_energy += b.potential_energy;
-    a.heat += b.heat;
-    for (int k = 0; k < Dim; ++k) {
-      a.momentum[k] += b.momentum[k];
-      a.lower[k] = std::min(a.lower[k], b.lower[k]);
-      a.upper[k] = std::max(a.upper[k], b.upper[k]);
-    }
-    a.max_speed = std::max(a.max_speed, b.max_speed);
-    a.max_compression = std::max(a.max_compression, b.max_compression);
-  });
+  Diagnostics total = reduce_slots(
+      p.slots(), zero,
+      [&](std::size_t slot, Diagnostics& d) {
+        if (p.is_padding(slot)) return;
+        double v2 = 0;
+        for (int k = 0; k < Dim; ++k) {
+          v2 += double(v[k][slot]) * v[k][slot];
+          d.potential_energy -= m * s.parameters.gravity[k] * x[k][slot];
+          d.momentum[k] += m * v[k][slot];
+          d.lower[k] = std::min(d.lower[k], x[k][slot]);
+          d.upper[k] = std::max(d.upper[k], x[k][slot]);
+        }
+        ++d.particles;
+        d.kinetic_energy += m * v2 / 2;
+        d.max_speed = std::max(d.max_speed, std::sqrt(v2));
+        d.max_compression = std::max(d.max_compression, std::abs(double(p[compression][0][slot])));
+        if (s.features.heat) d.heat += m * p[temperature][0][slot];
+      },
+      [](Diagnostics& a, const Diagnostics& b) {
+        a.particles += b.particles;
+        a.kinetic_energy += b.kinetic_energy;
+        a.potential_energy += b.potential_energy;
+        a.heat += b.heat;
+        for (int k = 0; k < Dim; ++k) {
+          a.momentum[k] += b.momentum[k];
+          a.lower[k] = std::min(a.lower[k], b.lower[k]);
+          a.upper[k] = std::max(a.upper[k], b.upper[k]);
+        }
+        a.max_speed = std::max(a.max_speed, b.max_speed);
+        a.max_compression = std::max(a.max_compression, b.max_compression);
+      });
   for (int k = 0; k < 3; ++k)
     if (k >= Dim || total.particles == 0) total.lower[k] = total.upper[k] = 0;
   return total;
@@ -73,8 +75,7 @@ void require_fields(const Features& features, const std::vector<std::string>& na
 namespace {
 
 /// The slots of the particles in id order.
-template <int Dim, class Real>
-std::vector<std::uint32_t> slots_by_id(const Particles<Dim, Real>& p) {
+template <int Dim, class Real> std::vector<std::uint32_t> slots_by_id(const Particles<Dim, Real>& p) {
   std::vector<std::uint32_t> slots;
   for (std::size_t s = 0; s < p.slots(); ++s)
     if (!p.is_padding(s)) slots.push_back(static_cast<std::uint32_t>(s));
@@ -145,8 +146,7 @@ std::int64_t count_between(const State<Dim, Real>& s, std::size_t cluster, ListE
 
 }  // namespace
 
-template <int Dim, class Real>
-std::int64_t count_pairs(const State<Dim, Real>& s) {
+template <int Dim, class Real> std::int64_t count_pairs(const State<Dim, Real>& s) {
   const auto chunks = s.neighbours.chunks();
   const double support2 = s.parameters.support_radius * s.parameters.support_radius;
   std::vector<std::int64_t> counts(chunks.size(), 0);
@@ -158,8 +158,7 @@ std::int64_t count_pairs(const State<Dim, Real>& s) {
   return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
 }
 
-template <int Dim, class Real>
-std::int64_t fastest_particle(const State<Dim, Real>& s) {
+template <int Dim, class Real> std::int64_t fastest_particle(const State<Dim, Real>& s) {
   std::int64_t fastest = -1;
   double most = -1;
   for (const std::uint32_t slot : slots_by_id(s.particles)) {
@@ -170,8 +169,7 @@ std::int64_t fastest_particle(const State<Dim, Real>& s) {
   return fastest;
 }
 
-template <int Dim, class Real>
-std::string find_non_finite(const State<Dim, Real>& s) {
+template <int Dim, class Real> std::string find_non_finite(const State<Dim, Real>& s) {
   const Particles<Dim, Real>& p = s.particles;
   const auto likely_cause = [&](std::string_view field) -> std::string {
     if (field == viscosity.name || field == stress.name)
@@ -179,7 +177,8 @@ std::string find_non_finite(const State<Dim, Real>& s) {
     if (field == temperature.name || field == temperature_rate.name)
       return "heat conduction ran away; lower numerics.courant.conduction or numerics.fixed_dt";
     return std::string("the time step was too large for the ") + name_of(s.clock.limit) +
-           " limit or particles met at high speed; lower numerics.courant, raise numerics.sound_speed or add numerics.xsph";
+           " limit or particles met at high speed; lower numerics.courant, raise numerics.sound_speed or add "
+           "numerics.xsph";
   };
   std::string line;
   for (const std::uint32_t slot : slots_by_id(p)) {
@@ -187,19 +186,19 @@ std::string find_non_finite(const State<Dim, Real>& s) {
       if (!line.empty() || !p.has(F{}) || F::storage == Storage::id) return;
       for (const auto* column : p[F{}].c)
         if (!std::isfinite(static_cast<double>(column[slot])) || std::abs(static_cast<double>(column[slot])) > 1e30)
-          line = "particle " + std::to_string(p[id][0][slot]) + ": " + std::string(F::name) + " is not finite: " +
-                 likely_cause(F::name);
+          line = "particle " + std::to_string(p[id][0][slot]) + ": " + std::string(F::name) +
+                 " is not finite: " + likely_cause(F::name);
     });
     if (!line.empty()) break;
   }
   return line;
 }
 
-#define MOLTEN_INSTANTIATE(Dim, Real)                                                                \
-  template Diagnostics diagnose(const State<Dim, Real>&);                                            \
-  template Snapshot take_snapshot(const State<Dim, Real>&, const std::vector<std::string>&);         \
-  template std::int64_t count_pairs(const State<Dim, Real>&);                                        \
-  template std::int64_t fastest_particle(const State<Dim, Real>&);                                   \
+#define MOLTEN_INSTANTIATE(Dim, Real)                                                        \
+  template Diagnostics diagnose(const State<Dim, Real>&);                                    \
+  template Snapshot take_snapshot(const State<Dim, Real>&, const std::vector<std::string>&); \
+  template std::int64_t count_pairs(const State<Dim, Real>&);                                \
+  template std::int64_t fastest_particle(const State<Dim, Real>&);                           \
   template std::string find_non_finite(const State<Dim, Real>&);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)

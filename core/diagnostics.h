@@ -22,8 +22,7 @@ struct Diagnostics {
 };
 
 /// The same bits for any thread count.
-template <int Dim, class Real>
-Diagnostics diagnose(const State<Dim, Real>& s);
+template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s);
 
 /// All particles in id order with the named fields (empty: all that the run has).
 template <int Dim, class Real>
@@ -35,15 +34,12 @@ std::vector<std::string> available_fields(const Features& features);
 void require_fields(const Features& features, const std::vector<std::string>& names);
 
 /// Directed pairs within the support, self excluded.
-template <int Dim, class Real>
-std::int64_t count_pairs(const State<Dim, Real>& s);
+template <int Dim, class Real> std::int64_t count_pairs(const State<Dim, Real>& s);
 
 /// The id of the fastest particle.
-template <int Dim, class Real>
-std::int64_t fastest_particle(const State<Dim, Real>& s);
+template <int Dim, class Real> std::int64_t fastest_particle(const State<Dim, Real>& s);
 
 /// One line on the first particle whose state is not finite: its id, the field, the likely cause. Empty: all finite.
-template <int Dim, class Real>
-std::string find_non_finite(const State<Dim, Real>& s);
+template <int Dim, class Real> std::string find_non_finite(const State<Dim, Real>& s);
 
 }  // namespace molten

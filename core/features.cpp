@@ -15,7 +15,8 @@ void require_sense(const Scene& scene) {
   const bool two_jumps = r.model == Rheology::Model::smd && r.jump_number[0] != r.jump_number[1];
   const bool melts = scene.fluid.heat && scene.fluid.heat->melting_range;
   if (two_jumps && !melts)
-    refuse(scene, "fluid.rheology.jump_number: two values need [fluid.heat] with melting_range; give one value or add them");
+    refuse(scene,
+           "fluid.rheology.jump_number: two values need [fluid.heat] with melting_range; give one value or add them");
   if (melts && r.model != Rheology::Model::smd)
     refuse(scene, "fluid.heat.melting_range: only model = \"smd\" melts; choose it or remove the range");
   for (int d = 0; d < scene.dimensions; ++d)

@@ -1,5 +1,5 @@
-// From a scene to what it needs: the terms, fields and passes of the run, fixed for its whole life. What a scene does not
-// mention has no column and no pass.
+// From a scene to what it needs: the terms, fields and passes of the run, fixed for its whole life. What a scene does
+// not mention has no column and no pass.
 #pragma once
 
 #include <string>
@@ -11,15 +11,16 @@
 namespace molten {
 
 struct Features {
-  bool heat = false;                 // temperature and its conduction
-  bool stress = false;               // viscosity that varies: strain-rate pass and stress
-  bool laminar = false;              // constant viscosity
+  bool heat = false;     // temperature and its conduction
+  bool stress = false;   // viscosity that varies: strain-rate pass and stress
+  bool laminar = false;  // constant viscosity
   bool artificial_viscosity = false;
   bool xsph = false;
-  bool contact = false;              // walls
+  bool contact = false;  // walls
   IntegratorKind integrator = IntegratorKind::leap_frog;
 
-  /// No forces but pressure and artificial viscosity, no heat, no XSPH: the shortest instantiation of the forces pass serves.
+  /// No forces but pressure and artificial viscosity, no heat, no XSPH: the shortest instantiation of the forces pass
+  /// serves.
   bool only_basic_forces() const { return !heat && !stress && !laminar && !xsph; }
 
   FieldSet columns() const;

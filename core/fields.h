@@ -10,11 +10,10 @@
 
 namespace molten {
 
-enum class FieldShape { scalar, vector, tensor };    // tensor: symmetric
-enum class Storage { real, exact, id };              // real: the run's precision; exact: double; id: 64-bit integer
+enum class FieldShape { scalar, vector, tensor };  // tensor: symmetric
+enum class Storage { real, exact, id };            // real: the run's precision; exact: double; id: 64-bit integer
 
-template <FieldShape shape_, Storage storage_>
-struct Field {
+template <FieldShape shape_, Storage storage_> struct Field {
   static constexpr FieldShape shape = shape_;
   static constexpr Storage storage = storage_;
 };
@@ -23,12 +22,12 @@ using ScalarField = Field<FieldShape::scalar, Storage::real>;
 using VectorField = Field<FieldShape::vector, Storage::real>;
 using TensorField = Field<FieldShape::tensor, Storage::real>;
 
-#define MOLTEN_FIELD(Type, Base, tag, unit_, meaning_)         \
-  struct Type : Base {                                         \
-    static constexpr std::string_view name = #tag;             \
-    static constexpr std::string_view unit = unit_;            \
-    static constexpr std::string_view meaning = meaning_;      \
-  };                                                           \
+#define MOLTEN_FIELD(Type, Base, tag, unit_, meaning_)    \
+  struct Type : Base {                                    \
+    static constexpr std::string_view name = #tag;        \
+    static constexpr std::string_view unit = unit_;       \
+    static constexpr std::string_view meaning = meaning_; \
+  };                                                      \
   inline constexpr Type tag {}
 
 using ExactVector = Field<FieldShape::vector, Storage::exact>;
@@ -49,7 +48,8 @@ MOLTEN_FIELD(PreviousCompressionRate, ScalarField, previous_compression_rate, "1
 MOLTEN_FIELD(OlderCompressionRate, ScalarField, older_compression_rate, "1/s", "compression rate two steps ago");
 
 // What the passes compute for each other, from the above.
-MOLTEN_FIELD(LocalPosition, VectorField, local_position, "m", "position relative to the cluster's origin, on the grid's quantum");
+MOLTEN_FIELD(LocalPosition, VectorField, local_position, "m",
+             "position relative to the cluster's origin, on the grid's quantum");
 MOLTEN_FIELD(LocalTemperature, ScalarField, local_temperature, "K", "temperature less the run's reference temperature");
 MOLTEN_FIELD(PressureTerm, ScalarField, pressure_term, "Pa m6/kg2", "pressure / density^2");
 MOLTEN_FIELD(Viscosity, ScalarField, viscosity, "Pa s", "dynamic viscosity");
@@ -65,63 +65,42 @@ MOLTEN_FIELD(KernelSum, ScalarField, kernel_sum, "1", "sum of m W");
 
 #undef MOLTEN_FIELD
 
-template <class... F>
-struct FieldList {
-  static constexpr int size = sizeof...(F);
-};
+template <class... F> struct FieldList { static constexpr int size = sizeof...(F); };
 
 /// All fields that can be columns, in the order of files.
-using AllFields = FieldList<Id, Position, Velocity, Compression, Temperature, HalfVelocity, HalfCompression,
-                            PreviousCompressionRate, OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress,
-                            Acceleration, CompressionRate, TemperatureRate, XsphVelocity>;
+using AllFields =
+    FieldList<Id, Position, Velocity, Compression, Temperature, HalfVelocity, HalfCompression, PreviousCompressionRate,
+              OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress, Acceleration,
+              CompressionRate, TemperatureRate, XsphVelocity>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 
-template <class F, class List>
-struct IndexOf;
-template <class F, class... Rest>
-struct IndexOf<F, FieldList<F, Rest...>> {
-  static constexpr int value = 0;
-};
-template <class F, class G, class... Rest>
-struct IndexOf<F, FieldList<G, Rest...>> {
+template <class F, class List> struct IndexOf;
+template <class F, class... Rest> struct IndexOf<F, FieldList<F, Rest...>> { static constexpr int value = 0; };
+template <class F, class G, class... Rest> struct IndexOf<F, FieldList<G, Rest...>> {
   static constexpr int value = 1 + IndexOf<F, FieldList<Rest...>>::value;
 };
 
-template <class F>
-inline constexpr int field_index = IndexOf<F, AllFields>::value;
+template <class F> inline constexpr int field_index = IndexOf<F, AllFields>::value;
 
-template <class F, class List>
-inline constexpr bool contains = false;
-template <class F, class... G>
-inline constexpr bool contains<F, FieldList<G...>> = (std::is_same_v<F, G> || ...);
+template <class F, class List> inline constexpr bool contains = false;
+template <class F, class... G> inline constexpr bool contains<F, FieldList<G...>> = (std::is_same_v<F, G> || ...);
 
-template <class A, class B>
-struct Joined;
-template <class... A>
-struct Joined<FieldList<A...>, FieldList<>> {
-  using type = FieldList<A...>;
-};
-template <class... A, class F, class... B>
-struct Joined<FieldList<A...>, FieldList<F, B...>> {
+template <class A, class B> struct Joined;
+template <class... A> struct Joined<FieldList<A...>, FieldList<>> { using type = FieldList<A...>; };
+template <class... A, class F, class... B> struct Joined<FieldList<A...>, FieldList<F, B...>> {
   using type = typename std::conditional_t<contains<F, FieldList<A...>>, Joined<FieldList<A...>, FieldList<B...>>,
                                            Joined<FieldList<A..., F>, FieldList<B...>>>::type;
 };
 
 /// The fields of all lists, each once.
-template <class... Lists>
-struct UnionOf {
-  using type = FieldList<>;
-};
-template <class List, class... Lists>
-struct UnionOf<List, Lists...> {
+template <class... Lists> struct UnionOf { using type = FieldList<>; };
+template <class List, class... Lists> struct UnionOf<List, Lists...> {
   using type = typename Joined<List, typename UnionOf<Lists...>::type>::type;
 };
 
-template <class A, class B>
-inline constexpr bool disjoint = true;
-template <class... A, class B>
-inline constexpr bool disjoint<FieldList<A...>, B> = !(contains<A, B> || ...);
+template <class A, class B> inline constexpr bool disjoint = true;
+template <class... A, class B> inline constexpr bool disjoint<FieldList<A...>, B> = !(contains<A, B> || ...);
 
 // ---- shapes ---------------------------------------------------------------------------------------------------------
 
@@ -140,9 +119,7 @@ using value_t = std::conditional_t<F::shape == FieldShape::scalar, T,
                                    std::conditional_t<F::shape == FieldShape::vector, Vec<Dim, T>, SymTensor<Dim, T>>>;
 
 /// Component k of a value of any shape.
-template <class T>
-T& component(T& v, int) requires(!requires { v.c; }) { return v; }
-template <class V>
-auto& component(V& v, int k) requires(requires { v.c; }) { return v.c[k]; }
+template <class T> T& component(T& v, int) requires(!requires { v.c; }) { return v; }
+template <class V> auto& component(V& v, int k) requires(requires { v.c; }) { return v.c[k]; }
 
 }  // namespace molten

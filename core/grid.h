@@ -13,8 +13,7 @@
 namespace molten {
 
 /// A periodic axis repeats every `period` m from `lower`; period 0: not periodic.
-template <int Dim>
-struct Periodicity {
+template <int Dim> struct Periodicity {
   std::array<double, Dim> lower{}, period{};
 
   bool along(int d) const { return period[d] > 0; }
@@ -25,11 +24,9 @@ struct Periodicity {
   }
 };
 
-template <int Dim>
-using Cell = std::array<std::int32_t, Dim>;  // column indices, then the segment
+template <int Dim> using Cell = std::array<std::int32_t, Dim>;  // column indices, then the segment
 
-template <int Dim>
-struct Grid {
+template <int Dim> struct Grid {
   static constexpr int along = Dim - 1;  // the axis of the columns
 
   std::array<double, Dim> lower{}, width{};  // m; of a column across, of a segment along
@@ -47,8 +44,7 @@ struct Grid {
     return n;
   }
   /// Number of the column of a cell; x fastest.
-  template <class C>
-  std::size_t column(const C& cell) const {
+  template <class C> std::size_t column(const C& cell) const {
     std::size_t n = 0;
     for (int d = along - 1; d >= 0; --d) n = n * cells[d] + cell[d];
     return n;

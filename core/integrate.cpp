@@ -1,10 +1,11 @@
 // The particle pass of a step: time integration and contact with walls.
 //
-// Leap-frog ([P] 6.4.3): v^{n+1/2} = v^{n-1/2} + dt a^n, x += dt v^{n+1/2}; v^{-1/2} = v^0 − ½ dt a^0 follows from a first half
-// step. The passes need v and ρ at the full step, before the rates there are known: v^{n+1} ≈ v^{n+1/2} + ½ dt a^n, and for ρ
-// the rate extrapolated half a step. (With ρ'^n alone a sound wave grows by (ω dt)⁴/4 a step.)
-// Symplectic Euler: v^{n+1} = v^n + dt a^n, x += dt v^{n+1}; the density follows the positions, so its rate is extrapolated
-// to the velocity that moved them, ρ'^n + (1+β)(ρ'^n − ρ'^{n−1}) − β(ρ'^{n−1} − ρ'^{n−2}), which is stable for 0.6 ≤ β ≤ 1.
+// Leap-frog ([P] 6.4.3): v^{n+1/2} = v^{n-1/2} + dt a^n, x += dt v^{n+1/2}; v^{-1/2} = v^0 − ½ dt a^0 follows from a
+// first half step. The passes need v and ρ at the full step, before the rates there are known: v^{n+1} ≈ v^{n+1/2} + ½
+// dt a^n, and for ρ the rate extrapolated half a step. (With ρ'^n alone a sound wave grows by (ω dt)⁴/4 a step.)
+// Symplectic Euler: v^{n+1} = v^n + dt a^n, x += dt v^{n+1}; the density follows the positions, so its rate is
+// extrapolated to the velocity that moved them, ρ'^n + (1+β)(ρ'^n − ρ'^{n−1}) − β(ρ'^{n−1} − ρ'^{n−2}), which is stable
+// for 0.6 ≤ β ≤ 1.
 #include <cmath>
 
 #include "core/particle_pass.h"
@@ -14,8 +15,7 @@ namespace molten {
 
 namespace {
 
-template <int Dim, class Real>
-class Integrator {
+template <int Dim, class Real> class Integrator {
  public:
   explicit Integrator(State<Dim, Real>& s, double previous_dt)
       : s_(s),
@@ -87,7 +87,8 @@ class Integrator {
     } else {
       constexpr double beta = 0.8;
       const double earlier_rise = s_.clock.step > 1 ? double(previous_rate_[slot]) - older_rate_[slot] : rise;
-      compression_[slot] = static_cast<Real>(compression_[slot] + dt_ * (rate + (1 + beta) * rise - beta * earlier_rise));
+      compression_[slot] =
+          static_cast<Real>(compression_[slot] + dt_ * (rate + (1 + beta) * rise - beta * earlier_rise));
       older_rate_[slot] = previous_rate_[slot];
     }
     previous_rate_[slot] = static_cast<Real>(rate);
@@ -114,8 +115,7 @@ class Integrator {
 };
 
 /// What the pair passes read of one particle, from its state.
-template <int Dim, class Real>
-class Preparation {
+template <int Dim, class Real> class Preparation {
  public:
   explicit Preparation(State<Dim, Real>& s) : s_(s) {}
 
@@ -136,8 +136,7 @@ class Preparation {
 
 }  // namespace
 
-template <int Dim, class Real>
-void integrate_and_collide(State<Dim, Real>& s) {
+template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   const auto scope = s.timer.scope(s.features.contact ? "integrate and collide" : "integrate");
   const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
   const Preparation<Dim, Real> preparation(s);
@@ -151,14 +150,13 @@ void integrate_and_collide(State<Dim, Real>& s) {
   s.neighbours.moved(std::sqrt(way2));
 }
 
-template <int Dim, class Real>
-void prepare(State<Dim, Real>& s) {
+template <int Dim, class Real> void prepare(State<Dim, Real>& s) {
   const Preparation<Dim, Real> preparation(s);
   for_each_slot(s.particles.slots(), [&](std::size_t slot) { preparation.of(slot); });
 }
 
-#define MOLTEN_INSTANTIATE(Dim, Real)                      \
-  template void integrate_and_collide(State<Dim, Real>&);  \
+#define MOLTEN_INSTANTIATE(Dim, Real)                     \
+  template void integrate_and_collide(State<Dim, Real>&); \
   template void prepare(State<Dim, Real>&);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)

@@ -1,5 +1,5 @@
-// Smoothing kernels W(r, h): normalised in 1-D, 2-D and 3-D ([Q] 2.16, 2.17, 4.3, 4.4; [D] 3.17-3.23, with the misprints
-// in the constants of [D] 3.19 and 3.23 put right; tests/kernel_test.cpp proves each by quadrature).
+// Smoothing kernels W(r, h): normalised in 1-D, 2-D and 3-D ([Q] 2.16, 2.17, 4.3, 4.4; [D] 3.17-3.23, with the
+// misprints in the constants of [D] 3.19 and 3.23 put right; tests/kernel_test.cpp proves each by quadrature).
 #pragma once
 
 #include <cmath>
@@ -15,11 +15,14 @@ namespace molten {
 /// Support radius / smoothing length.
 constexpr double kernel_reach(KernelKind kind) {
   switch (kind) {
-    case KernelKind::gaussian: return 3;
+    case KernelKind::gaussian:
+      return 3;
     case KernelKind::quadratic:
     case KernelKind::cubic_spline:
-    case KernelKind::wendland_c2: return 2;
-    default: return 1;
+    case KernelKind::wendland_c2:
+      return 2;
+    default:
+      return 1;
   }
 }
 
@@ -28,36 +31,38 @@ constexpr double kernel_constant(KernelKind kind, int dim) {
   constexpr double pi = std::numbers::pi;
   const auto of = [dim](double one, double two, double three) { return dim == 1 ? one : dim == 2 ? two : three; };
   switch (kind) {
-    case KernelKind::gaussian: return of(0.56418958354775629, 1 / pi, 0.17958712212516656);
-    case KernelKind::quadratic: return of(1, 2 / pi, 5 / (4 * pi));
-    case KernelKind::cubic_spline: return of(2. / 3, 10 / (7 * pi), 1 / pi);
-    case KernelKind::wendland_c2: return of(3. / 4, 7 / (4 * pi), 21 / (16 * pi));
-    case KernelKind::lucy: return of(5. / 4, 5 / pi, 105 / (16 * pi));
-    case KernelKind::poly6: return of(35. / 32, 4 / pi, 315 / (64 * pi));
-    case KernelKind::spiky: return of(2, 10 / pi, 15 / pi);
+    case KernelKind::gaussian:
+      return of(0.56418958354775629, 1 / pi, 0.17958712212516656);
+    case KernelKind::quadratic:
+      return of(1, 2 / pi, 5 / (4 * pi));
+    case KernelKind::cubic_spline:
+      return of(2. / 3, 10 / (7 * pi), 1 / pi);
+    case KernelKind::wendland_c2:
+      return of(3. / 4, 7 / (4 * pi), 21 / (16 * pi));
+    case KernelKind::lucy:
+      return of(5. / 4, 5 / pi, 105 / (16 * pi));
+    case KernelKind::poly6:
+      return of(35. / 32, 4 / pi, 315 / (64 * pi));
+    case KernelKind::spiky:
+      return of(2, 10 / pi, 15 / pi);
   }
   return 0;
 }
 
-/// A kernel's shape w(q) and slope w'(q)/q at q = r/h, zero at and beyond the support; each up to a constant factor that
-/// the kernel multiplies in once (slope_factor).
-template <class T>
-struct ShapeAndSlope {
-  T w, slope;
-};
+/// A kernel's shape w(q) and slope w'(q)/q at q = r/h, zero at and beyond the support; each up to a constant factor
+/// that the kernel multiplies in once (slope_factor).
+template <class T> struct ShapeAndSlope { T w, slope; };
 
 /// What the slopes below are to be multiplied with.
 constexpr double slope_factor(KernelKind kind) { return kind == KernelKind::wendland_c2 ? -5 : 1; }
 
-template <class T>
-ShapeAndSlope<T> wendland_shape(T q) {
+template <class T> ShapeAndSlope<T> wendland_shape(T q) {
   const T t = max(T(1) - T(0.5) * q, T(0));
   const T t3 = t * t * t;
   return {t3 * t * (T(2) * q + T(1)), t3};
 }
 
-template <class T>
-ShapeAndSlope<T> cubic_spline_shape(T q) {
+template <class T> ShapeAndSlope<T> cubic_spline_shape(T q) {
   // The two branches as one: ¼ (2−q)₊³ − (1−q)₊³, the B-spline written with truncated powers. Near 0 the slope's
   // terms cancel, so there it takes the inner branch, −3 + 9q/4.
   const T a = max(T(2) - q, T(0)), b = max(T(1) - q, T(0));
@@ -65,8 +70,7 @@ ShapeAndSlope<T> cubic_spline_shape(T q) {
   return {T(0.25) * a * a * a - b * b * b, select_less(q, T(1), T(2.25) * q - T(3), outer)};
 }
 
-template <class T>
-ShapeAndSlope<T> uncommon_shape(KernelKind kind, T q) {
+template <class T> ShapeAndSlope<T> uncommon_shape(KernelKind kind, T q) {
   const T one(1), zero(0), safe = max(q, T(1e-6));
   switch (kind) {
     case KernelKind::gaussian: {
@@ -96,8 +100,7 @@ ShapeAndSlope<T> uncommon_shape(KernelKind kind, T q) {
 enum class KernelChoice { wendland_c2, cubic_spline, other };
 
 /// Evaluates weight · W and weight · W'(r)/r; `weight` is the particle mass (kg).
-template <KernelChoice choice, class Real>
-class Kernel {
+template <KernelChoice choice, class Real> class Kernel {
  public:
   Kernel(KernelKind kind, int dim, double smoothing_length, double weight)
       : kind_(kind),
@@ -106,27 +109,24 @@ class Kernel {
         slope_(Real(weight * kernel_constant(kind, dim) * slope_factor(kind) / std::pow(smoothing_length, dim + 2))) {}
 
   /// At the distance r (m).
-  template <class T>
-  ShapeAndSlope<T> operator()(T r) const {
-    return at(r * T(inverse_h_));
-  }
+  template <class T> ShapeAndSlope<T> operator()(T r) const { return at(r * T(inverse_h_)); }
   /// At the square of the distance (m²); a particle with itself has r = 0.
-  template <int N>
-  ShapeAndSlope<Lanes<Real, N>> at_square(Lanes<Real, N> r2) const {
+  template <int N> ShapeAndSlope<Lanes<Real, N>> at_square(Lanes<Real, N> r2) const {
     return at(scaled_sqrt(max(r2, Lanes<Real, N>(std::numeric_limits<Real>::min() * Real(1e8))), inverse_h_));
   }
 
  private:
-  template <class T>
-  ShapeAndSlope<T> at(T q) const {
+  template <class T> ShapeAndSlope<T> at(T q) const {
     const ShapeAndSlope<T> s = shape(q);
     return {T(w_) * s.w, T(slope_) * s.slope};
   }
-  template <class T>
-  ShapeAndSlope<T> shape(T q) const {
-    if constexpr (choice == KernelChoice::wendland_c2) return wendland_shape(q);
-    else if constexpr (choice == KernelChoice::cubic_spline) return cubic_spline_shape(q);
-    else return uncommon_shape(kind_, q);
+  template <class T> ShapeAndSlope<T> shape(T q) const {
+    if constexpr (choice == KernelChoice::wendland_c2)
+      return wendland_shape(q);
+    else if constexpr (choice == KernelChoice::cubic_spline)
+      return cubic_spline_shape(q);
+    else
+      return uncommon_shape(kind_, q);
   }
 
   KernelKind kind_;
@@ -141,7 +141,8 @@ decltype(auto) with_kernel(KernelKind kind, int dim, double smoothing_length, do
       return f(Kernel<KernelChoice::wendland_c2, Real>(kind, dim, smoothing_length, weight));
     case KernelKind::cubic_spline:
       return f(Kernel<KernelChoice::cubic_spline, Real>(kind, dim, smoothing_length, weight));
-    default: return f(Kernel<KernelChoice::other, Real>(kind, dim, smoothing_length, weight));
+    default:
+      return f(Kernel<KernelChoice::other, Real>(kind, dim, smoothing_length, weight));
   }
 }
 

@@ -20,11 +20,9 @@ constexpr int boxes_at_once = 8;         // in the search for neighbours
 constexpr double far_away = 1e5;         // spacings; where padding slots sit
 
 /// Width of a column in spacings: a cluster of 4 then is about as long as it is wide.
-template <int Dim>
-constexpr double column_width = Dim == 2 ? 2.0 : 1.5874;
+template <int Dim> constexpr double column_width = Dim == 2 ? 2.0 : 1.5874;
 
-template <class T>
-std::size_t bytes_of(const std::vector<T>& v) { return v.capacity() * sizeof(T); }
+template <class T> std::size_t bytes_of(const std::vector<T>& v) { return v.capacity() * sizeof(T); }
 
 }  // namespace
 
@@ -34,8 +32,7 @@ Neighbours<Dim, Real>::Neighbours(const NeighbourSettings& settings, const Domai
   for (int d = 0; d < Dim; ++d) grid_.periodic[d] = domain.periodic.along(d);
 }
 
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::rebuild(Particles<Dim, Real>& particles) {
+template <int Dim, class Real> void Neighbours<Dim, Real>::rebuild(Particles<Dim, Real>& particles) {
   choose_grid(particles);
   sort(particles);
   find_boxes(particles);
@@ -43,17 +40,17 @@ void Neighbours<Dim, Real>::rebuild(Particles<Dim, Real>& particles) {
   displacement_ = 0;
 }
 
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::relist(Particles<Dim, Real>& particles) {
+template <int Dim, class Real> void Neighbours<Dim, Real>::relist(Particles<Dim, Real>& particles) {
   find_boxes(particles);
   list_neighbours();
 }
 
 // ---- the grid -------------------------------------------------------------------------------------------------------
 
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::choose_grid(const Particles<Dim, Real>& particles) {
-  struct Extent { std::array<double, Dim> lower, upper; };
+template <int Dim, class Real> void Neighbours<Dim, Real>::choose_grid(const Particles<Dim, Real>& particles) {
+  struct Extent {
+    std::array<double, Dim> lower, upper;
+  };
   Extent none;
   none.lower.fill(std::numeric_limits<double>::max());
   none.upper.fill(std::numeric_limits<double>::lowest());
@@ -64,12 +61,16 @@ void Neighbours<Dim, Real>::choose_grid(const Particles<Dim, Real>& particles) {
       a.upper[d] = std::max(a.upper[d], b.upper[d]);
     }
   };
-  Extent extent = reduce_slots(particles.slots(), none, [&](std::size_t s, Extent& e) {
-    if (particles.is_padding(s)) return;
-    Extent own;
-    for (int d = 0; d < Dim; ++d) own.lower[d] = own.upper[d] = std::clamp(x[d][s], domain_.lower[d], domain_.upper[d]);
-    join(e, own);
-  }, join);
+  Extent extent = reduce_slots(
+      particles.slots(), none,
+      [&](std::size_t s, Extent& e) {
+        if (particles.is_padding(s)) return;
+        Extent own;
+        for (int d = 0; d < Dim; ++d)
+          own.lower[d] = own.upper[d] = std::clamp(x[d][s], domain_.lower[d], domain_.upper[d]);
+        join(e, own);
+      },
+      join);
   if (extent.lower[0] > extent.upper[0]) extent.lower = extent.upper = domain_.lower;  // no particles
 
   // A quantum that divides every width, so that cells' origins lie on it: a power of two far below the spacing.
@@ -102,8 +103,7 @@ void Neighbours<Dim, Real>::choose_grid(const Particles<Dim, Real>& particles) {
   choose_quantum();
 }
 
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::choose_quantum() {
+template <int Dim, class Real> void Neighbours<Dim, Real>::choose_quantum() {
   // The largest coordinate that a pair within the support can have relative to either origin.
   const double reach = settings_.support_radius + 2 * settings_.skin + longest_cluster * settings_.spacing;
   double largest = 0;
@@ -126,8 +126,7 @@ void Neighbours<Dim, Real>::localise(Particles<Dim, Real>& particles, std::size_
 
 // ---- order ----------------------------------------------------------------------------------------------------------
 
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::sort(Particles<Dim, Real>& particles) {
+template <int Dim, class Real> void Neighbours<Dim, Real>::sort(Particles<Dim, Real>& particles) {
   const auto x = particles[position];
   for_each_slot(particles.slots(), [&](std::size_t s) {
     for (int d = 0; d < Dim; ++d) x[d][s] = domain_.periodic.wrapped(d, x[d][s]);
@@ -141,8 +140,7 @@ void Neighbours<Dim, Real>::sort(Particles<Dim, Real>& particles) {
 }
 
 /// Fills entries_ column by column, each sorted along the column; ties by id, so that the order depends on state alone.
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::sort_columns(const Particles<Dim, Real>& particles) {
+template <int Dim, class Real> void Neighbours<Dim, Real>::sort_columns(const Particles<Dim, Real>& particles) {
   const std::size_t slots = particles.slots(), columns = grid_.columns();
   const auto x = particles[position];
   const auto ids = particles[id][0];
@@ -217,8 +215,7 @@ std::vector<std::int32_t> Neighbours<Dim, Real>::cluster_order(const Particles<D
 
 // ---- the list -------------------------------------------------------------------------------------------------------
 
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::find_boxes(const Particles<Dim, Real>& particles) {
+template <int Dim, class Real> void Neighbours<Dim, Real>::find_boxes(const Particles<Dim, Real>& particles) {
   constexpr float out_of_reach = std::numeric_limits<float>::max() / 4;
   for (int d = 0; d < Dim; ++d) {
     boxes_.lower[d].assign(clusters() + boxes_at_once, out_of_reach);
@@ -240,22 +237,20 @@ void Neighbours<Dim, Real>::find_boxes(const Particles<Dim, Real>& particles) {
   });
 }
 
-/// Clusters whose boxes are within this are neighbours (m): the support and the skin, and a little slack, since boxes are
-/// floats and rounding must never lose a pair.
-template <int Dim, class Real>
-double Neighbours<Dim, Real>::list_range() const {
+/// Clusters whose boxes are within this are neighbours (m): the support and the skin, and a little slack, since boxes
+/// are floats and rounding must never lose a pair.
+template <int Dim, class Real> double Neighbours<Dim, Real>::list_range() const {
   constexpr int along = Grid<Dim>::along;
   return (settings_.support_radius + settings_.skin) * (1 + 1e-5) + 4e-7 * grid_.cells[along] * grid_.width[along];
 }
 
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::number_shifts() {
+template <int Dim, class Real> void Neighbours<Dim, Real>::number_shifts() {
   // When relisting, particles may have left their cell by half a skin each.
   const double range = list_range() + settings_.skin;
   std::size_t count = 1;
   for (int d = 0; d < Dim; ++d) {
-    shifts_.reach[d] = static_cast<int>(std::ceil((range + (d == Grid<Dim>::along ? longest_cluster * settings_.spacing : 0)) /
-                                                  grid_.width[d]));
+    shifts_.reach[d] = static_cast<int>(
+        std::ceil((range + (d == Grid<Dim>::along ? longest_cluster * settings_.spacing : 0)) / grid_.width[d]));
     count *= 2 * shifts_.reach[d] + 1;
   }
   shifts_.cluster_bits = 32 - static_cast<int>(std::bit_width(count - 1));
@@ -276,8 +271,7 @@ void Neighbours<Dim, Real>::number_shifts() {
 
 /// Lists the neighbours of a chunk's clusters. The clusters of a column look at the same columns around it, each with a
 /// cursor that only moves forward.
-template <int Dim, class Real>
-class Neighbours<Dim, Real>::Lister {
+template <int Dim, class Real> class Neighbours<Dim, Real>::Lister {
  public:
   explicit Lister(const Neighbours& neighbours)
       : n_(neighbours),
@@ -291,7 +285,8 @@ class Neighbours<Dim, Real>::Lister {
     count_ = 0;
     chunk.entry_begin.assign(1, 0);
     for (std::uint32_t c = chunk.begin; c < chunk.end; ++c) {
-      if (c == chunk.begin || n_.grid_.column(n_.cells_[c]) != n_.grid_.column(n_.cells_[c - 1])) look_around(n_.cells_[c]);
+      if (c == chunk.begin || n_.grid_.column(n_.cells_[c]) != n_.grid_.column(n_.cells_[c - 1]))
+        look_around(n_.cells_[c]);
       for (Target& target : targets_) list_column(c, target);
       chunk.entry_begin.push_back(static_cast<std::uint32_t>(count_));
     }
@@ -303,9 +298,9 @@ class Neighbours<Dim, Real>::Lister {
 
   /// A column around the present one, or a periodic image of it.
   struct Target {
-    std::uint32_t cursor, end;      // clusters
-    std::array<float, Dim> shift;   // m; its origin as seen from here
-    std::int32_t number;            // of the shift to its segment 0
+    std::uint32_t cursor, end;     // clusters
+    std::array<float, Dim> shift;  // m; its origin as seen from here
+    std::int32_t number;           // of the shift to its segment 0
   };
 
   void look_around(const Cell<Dim>& cell) {
@@ -325,8 +320,10 @@ class Neighbours<Dim, Real>::Lister {
     Cell<Dim> column{};
     for (int d = 0; d < along; ++d) {
       column[d] = cell[d] + offset[d];
-      if (grid.periodic[d]) column[d] = ((column[d] % grid.cells[d]) + grid.cells[d]) % grid.cells[d];
-      else if (column[d] < 0 || column[d] >= grid.cells[d]) return;
+      if (grid.periodic[d])
+        column[d] = ((column[d] % grid.cells[d]) + grid.cells[d]) % grid.cells[d];
+      else if (column[d] < 0 || column[d] >= grid.cells[d])
+        return;
     }
     const std::size_t number = grid.column(column);
     const double length = grid.cells[along] * grid.width[along];
@@ -385,8 +382,7 @@ class Neighbours<Dim, Real>::Lister {
   std::size_t count_ = 0;
 };
 
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::list_neighbours() {
+template <int Dim, class Real> void Neighbours<Dim, Real>::list_neighbours() {
   number_shifts();
   const std::size_t count = (clusters() + clusters_a_chunk - 1) / clusters_a_chunk;
   chunks_.resize(count);
@@ -398,16 +394,15 @@ void Neighbours<Dim, Real>::list_neighbours() {
   });
 }
 
-template <int Dim, class Real>
-std::size_t Neighbours<Dim, Real>::bytes() const {
-  std::size_t sum = bytes_of(cells_) + bytes_of(column_begin_) + bytes_of(entries_) + bytes_of(entry_begin_) + bytes_of(chunks_);
+template <int Dim, class Real> std::size_t Neighbours<Dim, Real>::bytes() const {
+  std::size_t sum =
+      bytes_of(cells_) + bytes_of(column_begin_) + bytes_of(entries_) + bytes_of(entry_begin_) + bytes_of(chunks_);
   for (int d = 0; d < Dim; ++d) sum += bytes_of(boxes_.lower[d]) + bytes_of(boxes_.upper[d]);
   for (const ClusterChunk& c : chunks_) sum += bytes_of(c.entries) + bytes_of(c.entry_begin);
   return sum;
 }
 
-template <int Dim, class Real>
-void Neighbours<Dim, Real>::archive(Archive& a) {
+template <int Dim, class Real> void Neighbours<Dim, Real>::archive(Archive& a) {
   a.value("neighbours/displacement", displacement_);
   auto dropped = static_cast<std::int64_t>(dropped_);
   a.value("neighbours/dropped", dropped);
@@ -429,8 +424,8 @@ void Neighbours<Dim, Real>::archive(Archive& a) {
 
 template <int Dim, class Real>
 std::vector<std::pair<std::uint32_t, std::uint32_t>> naive_pairs(const Particles<Dim, Real>& particles,
-                                                                const Periodicity<Dim>& periodic,
-                                                                double support_radius) {
+                                                                 const Periodicity<Dim>& periodic,
+                                                                 double support_radius) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   const auto x = particles[position];
   for (std::uint32_t i = 0; i < particles.slots(); ++i)
@@ -447,9 +442,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> naive_pairs(const Particles
   return pairs;
 }
 
-#define MOLTEN_INSTANTIATE(Dim, Real)                                                                      \
-  template class Neighbours<Dim, Real>;                                                                    \
-  template std::vector<std::pair<std::uint32_t, std::uint32_t>> naive_pairs(const Particles<Dim, Real>&,   \
+#define MOLTEN_INSTANTIATE(Dim, Real)                                                                    \
+  template class Neighbours<Dim, Real>;                                                                  \
+  template std::vector<std::pair<std::uint32_t, std::uint32_t>> naive_pairs(const Particles<Dim, Real>&, \
                                                                             const Periodicity<Dim>&, double);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)

@@ -28,10 +28,9 @@ struct ClusterChunk {
 };
 
 /// The offsets between neighbouring cells' origins, numbered: across by columns, along by segments.
-template <int Dim>
-struct ShiftTable {
-  std::array<int, Dim> reach{};  // cells to each side
-  int cluster_bits = 32;         // of a ListEntry; the rest number the shift
+template <int Dim> struct ShiftTable {
+  std::array<int, Dim> reach{};                // cells to each side
+  int cluster_bits = 32;                       // of a ListEntry; the rest number the shift
   std::vector<std::array<double, Dim>> shift;  // m, on the grid's quantum
 
   std::uint32_t number(const Cell<Dim>& offset) const {
@@ -49,14 +48,12 @@ struct NeighbourSettings {
   double skin = 0;            // m
 };
 
-template <int Dim>
-struct Domain {
+template <int Dim> struct Domain {
   std::array<double, Dim> lower{}, upper{};  // m; particles outside are dropped at the next sort
   Periodicity<Dim> periodic;
 };
 
-template <int Dim, class Real>
-class Neighbours {
+template <int Dim, class Real> class Neighbours {
  public:
   Neighbours(const NeighbourSettings& settings, const Domain<Dim>& domain);
 
@@ -82,8 +79,8 @@ class Neighbours {
   void localise(Particles<Dim, Real>& particles, std::size_t slot) const;
 
   void archive(Archive& a);
-  /// After loading: lists the neighbours again for the restored order. The list may differ from the stored run's in pairs
-  /// outside the support only, so sums keep their bits.
+  /// After loading: lists the neighbours again for the restored order. The list may differ from the stored run's in
+  /// pairs outside the support only, so sums keep their bits.
   void relist(Particles<Dim, Real>& particles);
 
  private:
@@ -114,18 +111,18 @@ class Neighbours {
   std::vector<ClusterChunk> chunks_;
 
   struct Entry {
-    float along;          // position along the column, m from the grid's lower end
-    std::int32_t slot;    // old slot
+    float along;        // position along the column, m from the grid's lower end
+    std::int32_t slot;  // old slot
   };
-  std::vector<Entry> entries_;                // sort scratch
-  std::vector<std::uint32_t> entry_begin_;    // by column
+  std::vector<Entry> entries_;              // sort scratch
+  std::vector<std::uint32_t> entry_begin_;  // by column
 };
 
 /// All pairs within the support by brute force: the twin that tests hold the list against. Slots, both directions,
 /// self excluded.
 template <int Dim, class Real>
 std::vector<std::pair<std::uint32_t, std::uint32_t>> naive_pairs(const Particles<Dim, Real>& particles,
-                                                                const Periodicity<Dim>& periodic,
-                                                                double support_radius);
+                                                                 const Periodicity<Dim>& periodic,
+                                                                 double support_radius);
 
 }  // namespace molten

@@ -13,8 +13,8 @@
 //     }
 //   };
 //
-// A contribution is always a multiple of m_j W or of m_j ∇W = m_j (W'/r) x_ij, which vanish beyond the support, so lanes
-// without a pair add exactly zero.
+// A contribution is always a multiple of m_j W or of m_j ∇W = m_j (W'/r) x_ij, which vanish beyond the support, so
+// lanes without a pair add exactly zero.
 #pragma once
 
 #include <cstdint>
@@ -31,105 +31,84 @@
 namespace molten {
 
 /// Pair quantities of N lanes.
-template <int Dim, class L>
-struct Pair {
+template <int Dim, class L> struct Pair {
   Vec<Dim, L> x;  // x_i − x_j, m
   L r2;           // |x|², m²
 };
 
 /// One value for each field of a list.
-template <class F, int Dim, class T>
-struct Slot {
-  value_t<F, Dim, T> value;
-};
-template <class List, int Dim, class T>
-struct Values;
-template <class... F, int Dim, class T>
-struct Values<FieldList<F...>, Dim, T> : Slot<F, Dim, T>... {
+template <class F, int Dim, class T> struct Slot { value_t<F, Dim, T> value; };
+template <class List, int Dim, class T> struct Values;
+template <class... F, int Dim, class T> struct Values<FieldList<F...>, Dim, T> : Slot<F, Dim, T>... {
   template <class G>
-    requires contains<G, FieldList<F...>>
-  value_t<G, Dim, T>& operator[](G) { return Slot<G, Dim, T>::value; }
+  requires contains<G, FieldList<F...>> value_t<G, Dim, T>
+  &operator[](G) { return Slot<G, Dim, T>::value; }
   template <class G>
-    requires contains<G, FieldList<F...>>
+  requires contains<G, FieldList<F...>>
   const value_t<G, Dim, T>& operator[](G) const { return Slot<G, Dim, T>::value; }
 };
 
 namespace pair_pass_detail {
 
 /// The columns that a pass reads, fetched once.
-template <class List, int Dim, class Real>
-struct Columns;
+template <class List, int Dim, class Real> struct Columns;
 template <class... F, int Dim, class Real>
 struct Columns<FieldList<F...>, Dim, Real> : Column<F, Dim, stored_t<F, Real>>... {
   explicit Columns(const Particles<Dim, Real>& p) : Column<F, Dim, stored_t<F, Real>>(p[F{}])... {}
-  template <class G>
-  const Column<G, Dim, stored_t<G, Real>>& operator[](G) const { return *this; }
+  template <class G> const Column<G, Dim, stored_t<G, Real>>& operator[](G) const { return *this; }
 };
 
 /// The values of J neighbours from `slot` on, loaded when a term asks for them.
-template <int J, class L, int Dim, class Real, class Cols>
-struct Neighbour {
+template <int J, class L, int Dim, class Real, class Cols> struct Neighbour {
   const Cols& columns;
   std::size_t slot;
 
-  template <class F>
-  value_t<F, Dim, L> operator[](F) const {
+  template <class F> value_t<F, Dim, L> operator[](F) const {
     static_assert(F::storage == Storage::real, "pair arithmetic reads columns of the run's precision");
     value_t<F, Dim, L> v;
     const auto& column = columns[F{}];
-    unrolled<components<F, Dim>>([&](auto k) { component(v, k) = load_j<J, Real, sizeof(L) / sizeof(Real)>(column[k] + slot); });
+    unrolled<components<F, Dim>>(
+        [&](auto k) { component(v, k) = load_j<J, Real, sizeof(L) / sizeof(Real)>(column[k] + slot); });
     return v;
   }
 };
 
 /// The fields to which a term adds along x_ij; a term without any need not say so.
+template <class Term> struct RadialOf { using type = FieldList<>; };
 template <class Term>
-struct RadialOf {
-  using type = FieldList<>;
-};
-template <class Term>
-  requires requires { typename Term::Radial; }
+requires requires { typename Term::Radial; }
 struct RadialOf<Term> {
   using type = typename Term::Radial;
 };
 
 /// Where the terms add their contributions of one pair. What several terms add along x_ij is joined before it is
 /// multiplied.
-template <class Sums, class Radial, int Dim, class L>
-struct Out {
+template <class Sums, class Radial, int Dim, class L> struct Out {
   Values<Sums, Dim, L>& sums;
   const ShapeAndSlope<L>& kernel;
   Values<Radial, Dim, L> radial;  // component 0 only
 
   /// Adds m_j W'/r · v
-  template <class F>
-  [[gnu::always_inline]] void gradW(F, const value_t<F, Dim, L>& v) {
+  template <class F> [[gnu::always_inline]] void gradW(F, const value_t<F, Dim, L>& v) {
     unrolled<components<F, Dim>>([&](auto k) { component(sums[F{}], k) += kernel.slope * component(v, k); });
   }
   /// Adds m_j ∇W · s to a vector.
-  template <class F>
-  [[gnu::always_inline]] void along(F, const L& s) {
-    radial[F{}][0] += s;
-  }
+  template <class F> [[gnu::always_inline]] void along(F, const L& s) { radial[F{}][0] += s; }
   /// Adds m_j W · v
-  template <class F>
-  [[gnu::always_inline]] void W(F, const value_t<F, Dim, L>& v) {
+  template <class F> [[gnu::always_inline]] void W(F, const value_t<F, Dim, L>& v) {
     unrolled<components<F, Dim>>([&](auto k) { component(sums[F{}], k) += kernel.w * component(v, k); });
   }
 
-  template <class... F>
-  [[gnu::always_inline]] void add_radial(FieldList<F...>, const Vec<Dim, L>& x) {
+  template <class... F> [[gnu::always_inline]] void add_radial(FieldList<F...>, const Vec<Dim, L>& x) {
     (add_radial(F{}, x), ...);
   }
-  template <class F>
-  [[gnu::always_inline]] void add_radial(F, const Vec<Dim, L>& x) {
+  template <class F> [[gnu::always_inline]] void add_radial(F, const Vec<Dim, L>& x) {
     const L s = kernel.slope * radial[F{}][0];
     unrolled<Dim>([&](auto d) { sums[F{}][d] += s * x[d]; });
   }
 };
 
-template <class... F, int Dim, class L>
-void clear(Values<FieldList<F...>, Dim, L>& values) {
+template <class... F, int Dim, class L> void clear(Values<FieldList<F...>, Dim, L>& values) {
   (unrolled<components<F, Dim>>([&](auto k) { component(values[F{}], k) = L(0); }), ...);
 }
 
@@ -138,8 +117,7 @@ void clear(Values<FieldList<F...>, Dim, L>& values) {
 /// A named pass: which lanes it runs on and what it fuses.
 ///   The callable is called once for each particle slot (padding too) with its sums as Values<Sums, Dim, Real>.
 ///   finish.for_chunk(number) gives the callable for one chunk, which may hold that chunk's share of a reduction.
-template <int N, int Dim, class Real, class KernelType, class Finish, class... Terms>
-class PairPass {
+template <int N, int Dim, class Real, class KernelType, class Finish, class... Terms> class PairPass {
   using L = Lanes<Real, N>;
   using Reads = typename UnionOf<FieldList<LocalPosition>, typename Terms::Reads...>::type;
   using Sums = typename UnionOf<typename Terms::Sums...>::type;
@@ -209,8 +187,7 @@ class PairPass {
     if (term.on) term(ij, i, j, out);
   }
 
-  template <class... F>
-  Values<Reads, Dim, L> load_own(std::size_t slot, FieldList<F...>) const {
+  template <class... F> Values<Reads, Dim, L> load_own(std::size_t slot, FieldList<F...>) const {
     Values<Reads, Dim, L> v;
     const auto load = [&]<class G>(G) {
       unrolled<components<G, Dim>>([&](auto k) {
@@ -248,23 +225,22 @@ class PairPass {
 
 /// A term must not read what a term of the same pass sums: such terms belong in different passes.
 template <class... Terms>
-concept Fusable = disjoint<typename UnionOf<typename Terms::Reads...>::type, typename UnionOf<typename Terms::Sums...>::type>;
+concept Fusable = disjoint < typename UnionOf<typename Terms::Reads...>::type,
+typename UnionOf<typename Terms::Sums...>::type > ;
 
 /// Runs fused terms over all pairs on N lanes.
 template <int N, int Dim, class Real, class KernelType, class Finish, class... Terms>
-  requires Fusable<Terms...>
+requires Fusable<Terms...>
 void pair_pass(const Neighbours<Dim, Real>& neighbours, const Particles<Dim, Real>& particles, const KernelType& kernel,
                const Finish& finish, const Terms&... terms) {
   PairPass<N, Dim, Real, KernelType, Finish, Terms...>(neighbours, particles, kernel, finish, terms...).run();
 }
 
 /// A finish without reductions: f(slot, sums).
-template <class F>
-struct PlainFinish {
+template <class F> struct PlainFinish {
   F f;
   const F& for_chunk(std::size_t) const { return f; }
 };
-template <class F>
-PlainFinish(F) -> PlainFinish<F>;
+template <class F> PlainFinish(F) -> PlainFinish<F>;
 
 }  // namespace molten

@@ -28,8 +28,7 @@ double default_sound_speed(const Scene& scene, const Start& start, const Extent&
 }
 
 /// A hundred extents of the fluid to each side: far enough that only what has escaped is dropped.
-template <int Dim>
-Domain<Dim> domain_of(const Scene& scene, const Extent& extent, double spacing) {
+template <int Dim> Domain<Dim> domain_of(const Scene& scene, const Extent& extent, double spacing) {
   Domain<Dim> domain;
   double size = 10 * spacing;
   for (int d = 0; d < Dim; ++d) size = std::max(size, extent.upper[d] - extent.lower[d]);
@@ -45,8 +44,7 @@ Domain<Dim> domain_of(const Scene& scene, const Extent& extent, double spacing) 
 
 }  // namespace
 
-template <int Dim>
-Parameters<Dim> parameters_of(const Scene& scene, const Start& start) {
+template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start& start) {
   const Extent extent = extent_of(start);
   const Numerics& n = scene.numerics;
   Parameters<Dim> p;
@@ -57,7 +55,8 @@ Parameters<Dim> parameters_of(const Scene& scene, const Start& start) {
   p.particle_mass = scene.fluid.density * start.measure / static_cast<double>(start.position.size());
   for (int d = 0; d < Dim; ++d) p.gravity[d] = scene.gravity[d];
   p.kernel = n.kernel;
-  p.eos = {n.state_equation, scene.fluid.density, n.sound_speed.value_or(default_sound_speed(scene, start, extent)), n.gamma};
+  p.eos = {n.state_equation, scene.fluid.density, n.sound_speed.value_or(default_sound_speed(scene, start, extent)),
+           n.gamma};
   const Rheology& r = scene.fluid.rheology;
   p.viscosity = r.viscosity;
   if (r.model == Rheology::Model::smd) p.smd = Smd(r.flow_index, r.yield_stress, r.consistency, r.jump_number);

@@ -13,34 +13,32 @@
 
 namespace molten {
 
-template <int Dim>
-struct Parameters {
+template <int Dim> struct Parameters {
   double spacing = 0, smoothing_length = 0, support_radius = 0, skin = 0;  // m
-  double particle_mass = 0;                                               // kg (2-D: kg per m of depth)
-  std::array<double, Dim> gravity{};                                      // m/s²
+  double particle_mass = 0;                                                // kg (2-D: kg per m of depth)
+  std::array<double, Dim> gravity{};                                       // m/s²
   KernelKind kernel = KernelKind::wendland_c2;
   EquationOfState eos;
-  double viscosity = 0;                                                   // Pa s, Newtonian
+  double viscosity = 0;  // Pa s, Newtonian
   Smd smd;
-  double diffusivity = 0, reference_temperature = 0;                      // m²/s; T that local temperatures refer to
-  double artificial_viscosity = 0;                                        // α
-  double xsph = 0;                                                        // ε
+  double diffusivity = 0, reference_temperature = 0;  // m²/s; T that local temperatures refer to
+  double artificial_viscosity = 0;                    // α
+  double xsph = 0;                                    // ε
   Xsph::Form xsph_form = Xsph::Form::position;
   double courant_sound = 0, courant_viscous = 0, courant_force = 0, courant_conduction = 0;
-  std::optional<double> fixed_dt;                                         // s
+  std::optional<double> fixed_dt;  // s
   bool sort_each_step = false;
   Domain<Dim> domain;
 };
 
 /// What the start of a run is made of: the filled bodies, one entry a particle.
 struct Start {
-  double spacing = 0;                  // m
-  double measure = 0;                  // m³ (2-D: m²) of all bodies
+  double spacing = 0;                                     // m
+  double measure = 0;                                     // m³ (2-D: m²) of all bodies
   std::vector<std::array<double, 3>> position, velocity;  // m, m/s
-  std::vector<double> temperature;     // empty without heat
+  std::vector<double> temperature;                        // empty without heat
 };
 
-template <int Dim>
-Parameters<Dim> parameters_of(const Scene& scene, const Start& start);
+template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start& start);
 
 }  // namespace molten

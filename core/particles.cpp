@@ -21,13 +21,11 @@ void Buffer::resize(std::size_t bytes) {
   capacity_ = rounded;
 }
 
-template <int Dim, class Real>
-Particles<Dim, Real>::Particles(FieldSet active) : active_(active) {
+template <int Dim, class Real> Particles<Dim, Real>::Particles(FieldSet active) : active_(active) {
   active_.set(field_index<Id>);
 }
 
-template <int Dim, class Real>
-void Particles<Dim, Real>::resize(std::size_t slots, std::size_t count) {
+template <int Dim, class Real> void Particles<Dim, Real>::resize(std::size_t slots, std::size_t count) {
   slots_ = slots;
   count_ = count;
   for_each_field([&]<class F>(F) {
@@ -37,8 +35,7 @@ void Particles<Dim, Real>::resize(std::size_t slots, std::size_t count) {
   });
 }
 
-template <int Dim, class Real>
-std::size_t Particles<Dim, Real>::bytes() const {
+template <int Dim, class Real> std::size_t Particles<Dim, Real>::bytes() const {
   std::size_t sum = scratch_.capacity();
   for (const Buffer& b : columns_) sum += b.capacity();
   return sum;
@@ -63,8 +60,7 @@ void Particles<Dim, Real>::permute(std::span<const std::int32_t> order, std::siz
   count_ = count;
 }
 
-template <int Dim, class Real>
-void Particles<Dim, Real>::archive(Archive& a) {
+template <int Dim, class Real> void Particles<Dim, Real>::archive(Archive& a) {
   auto slots = static_cast<std::int64_t>(slots_), count = static_cast<std::int64_t>(count_);
   a.value("particles/slots", slots);
   a.value("particles/count", count);

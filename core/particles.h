@@ -20,8 +20,7 @@ inline constexpr std::int64_t padding_id = -1;
 
 using FieldSet = std::bitset<AllFields::size>;
 
-template <class... F>
-FieldSet field_set(FieldList<F...>) {
+template <class... F> FieldSet field_set(FieldList<F...>) {
   FieldSet s;
   (s.set(field_index<F>), ...);
   return s;
@@ -36,14 +35,15 @@ class Buffer {
   void swap(Buffer& other) noexcept { std::swap(data_, other.data_), std::swap(capacity_, other.capacity_); }
 
  private:
-  struct Free { void operator()(void* p) const { std::free(p); } };
+  struct Free {
+    void operator()(void* p) const { std::free(p); }
+  };
   std::unique_ptr<void, Free> data_;
   std::size_t capacity_ = 0;
 };
 
 /// One array a component. column[k][slot] is component k; column.of(slot) the whole value.
-template <class F, int Dim, class T>
-struct Column {
+template <class F, int Dim, class T> struct Column {
   static constexpr int size = components<F, Dim>;
   std::array<T*, size> c;
 
@@ -58,8 +58,7 @@ struct Column {
   }
 };
 
-template <int Dim, class Real>
-class Particles {
+template <int Dim, class Real> class Particles {
  public:
   explicit Particles(FieldSet active);
 
@@ -72,12 +71,10 @@ class Particles {
   bool has(FieldSet f) const { return (active_ & f) == f; }
   FieldSet active() const { return active_; }
 
-  template <class F>
-  bool has(F) const { return active_.test(field_index<F>); }
+  template <class F> bool has(F) const { return active_.test(field_index<F>); }
 
   /// The column of a field; its pointers are null if the run does not have it.
-  template <class F>
-  Column<F, Dim, stored_t<F, Real>> operator[](F) const {
+  template <class F> Column<F, Dim, stored_t<F, Real>> operator[](F) const {
     Column<F, Dim, stored_t<F, Real>> column;
     for (int k = 0; k < column.size; ++k)
       column.c[k] = static_cast<stored_t<F, Real>*>(columns_[first_component<F>() + k].data());
@@ -92,10 +89,7 @@ class Particles {
   void archive(Archive& a);
 
  private:
-  template <class F>
-  static constexpr int first_component() {
-    return first_component_at(field_index<F>);
-  }
+  template <class F> static constexpr int first_component() { return first_component_at(field_index<F>); }
   static constexpr int max_components = Dim * (Dim + 1) / 2;
   static constexpr int first_component_at(int field) { return field * max_components; }
 
@@ -106,8 +100,7 @@ class Particles {
 };
 
 /// Calls f(Field{}) for every field.
-template <class F>
-void for_each_field(F&& f) {
+template <class F> void for_each_field(F&& f) {
   [&]<class... Fs>(FieldList<Fs...>) { (f(Fs{}), ...); }(AllFields{});
 }
 

@@ -16,8 +16,7 @@ namespace molten {
 namespace {
 
 /// Strain rate → viscosity → stress, particle by particle.
-template <int Dim, class Real>
-struct ViscosityFinish {
+template <int Dim, class Real> struct ViscosityFinish {
   State<Dim, Real>& s;
 
   auto for_chunk(std::size_t) const {
@@ -36,8 +35,7 @@ struct ViscosityFinish {
 };
 
 /// Sums → columns of rates; keeps the extremes of its chunk.
-template <int Dim, class Real>
-struct RatesFinish {
+template <int Dim, class Real> struct RatesFinish {
   State<Dim, Real>& s;
   std::vector<Extremes>& extremes;
 
@@ -55,8 +53,7 @@ struct RatesFinish {
     const Real* compressions = p[compression][0];
     Real inverse_rest_density = static_cast<Real>(1 / s.parameters.eos.rest_density);
 
-    template <class Sums>
-    void operator()(std::size_t slot, const Sums& sums) {
+    template <class Sums> void operator()(std::size_t slot, const Sums& sums) {
       const bool padding = ids[slot] == padding_id;
       const Real alive = padding ? Real(0) : Real(1);
       double a2 = 0, v2 = 0, x2 = 0;
@@ -107,16 +104,14 @@ Extremes joined(const std::vector<Extremes>& parts) {
 }
 
 /// Calls f(kernel) with the run's kernel, weighted with the particle mass.
-template <int Dim, class Real, class F>
-void with_run_kernel(const State<Dim, Real>& s, F&& f) {
+template <int Dim, class Real, class F> void with_run_kernel(const State<Dim, Real>& s, F&& f) {
   const Parameters<Dim>& p = s.parameters;
   with_kernel<Real>(p.kernel, Dim, p.smoothing_length, p.particle_mass, std::forward<F>(f));
 }
 
 }  // namespace
 
-template <int Dim, class Real>
-void find_viscosity(State<Dim, Real>& s) {
+template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("viscosity");
   const ViscosityFinish<Dim, Real> finish{s};
   with_run_kernel(s, [&](const auto& kernel) {
@@ -124,8 +119,7 @@ void find_viscosity(State<Dim, Real>& s) {
   });
 }
 
-template <int Dim, class Real>
-void find_rates(State<Dim, Real>& s) {
+template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   const auto scope = s.timer.scope(s.features.heat ? "forces and heat" : "forces");
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
@@ -136,10 +130,12 @@ void find_rates(State<Dim, Real>& s) {
   const ArtificialViscosity<Real> artificial(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, rho0);
   with_run_kernel(s, [&](const auto& kernel) {
     const auto pass = [&](const auto&... terms) {
-      pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, continuity, pressure, artificial, terms...);
+      pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, continuity, pressure, artificial,
+                                    terms...);
     };
     // Two instantiations: what every scene has, and with everything that a scene may have beside it.
-    if (s.features.only_basic_forces()) pass();
+    if (s.features.only_basic_forces())
+      pass();
     else
       pass(LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0),
            StressForce<Dim, Real>(s.features.stress, rho0),
@@ -149,8 +145,8 @@ void find_rates(State<Dim, Real>& s) {
   if (s.features.laminar) s.extremes.kinematic_viscosity = p.viscosity / rho0;
 }
 
-#define MOLTEN_INSTANTIATE(Dim, Real)               \
-  template void find_viscosity(State<Dim, Real>&);  \
+#define MOLTEN_INSTANTIATE(Dim, Real)              \
+  template void find_viscosity(State<Dim, Real>&); \
   template void find_rates(State<Dim, Real>&);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)

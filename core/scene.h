@@ -20,11 +20,12 @@ struct Place {
 // ---- shapes: each exactly one of the forms ----------------------------------------------------------------------
 
 struct MeshFile {
-  std::string path;                    // OBJ, STL, PLY; relative to the scene's folder, then scenes/
-  std::optional<double> height;        // m; scales the mesh uniformly to this extent along the up axis
-  std::array<double, 3> position{};    // m; where the middle of the mesh's base goes, when `height` or `position` is given
-  bool placed = false;                 // position was given
-  std::array<double, 3> rotation{};    // degrees about x, then y, then z, before scaling and placing
+  std::string path;              // OBJ, STL, PLY; relative to the scene's folder, then scenes/
+  std::optional<double> height;  // m; scales the mesh uniformly to this extent along the up axis
+  std::array<double, 3>
+      position{};       // m; where the middle of the mesh's base goes, when `height` or `position` is given
+  bool placed = false;  // position was given
+  std::array<double, 3> rotation{};  // degrees about x, then y, then z, before scaling and placing
 };
 struct Sphere {
   std::array<double, 3> center{};  // m
@@ -34,12 +35,12 @@ struct Box {
   std::array<double, 3> min{}, max{};  // m
 };
 struct Cylinder {
-  std::array<double, 3> base{};  // m; centre of the lower disc; the axis is z (y in 2-D)
+  std::array<double, 3> base{};   // m; centre of the lower disc; the axis is z (y in 2-D)
   double radius = 0, height = 0;  // m
 };
 struct Cone {
-  std::array<double, 3> base{};                    // m
-  double radius = 0, top_radius = 0, height = 0;   // m
+  std::array<double, 3> base{};                   // m
+  double radius = 0, top_radius = 0, height = 0;  // m
 };
 struct Polygon {
   std::vector<std::array<double, 2>> points;  // m; counter-clockwise; in 2-D the region itself, in 3-D in the x-y plane
@@ -49,9 +50,9 @@ struct Plane {
   std::array<double, 3> point{}, normal{};  // m, -; infinite; the fluid is on the side the normal points to
 };
 struct Terrain {
-  std::string path;                   // ESRI ASCII grid (.asc) or JSON height grid {width, height, values}
-  std::optional<double> cell_size;    // m between samples; required for JSON unless the file has it
-  double scale = 1;                   // factor on heights
+  std::string path;                             // ESRI ASCII grid (.asc) or JSON height grid {width, height, values}
+  std::optional<double> cell_size;              // m between samples; required for JSON unless the file has it
+  double scale = 1;                             // factor on heights
   std::optional<std::array<double, 2>> origin;  // m; x, y of the south-west sample; default: as the file has it
 };
 
@@ -73,31 +74,31 @@ struct Shape {
 /// Dynamic viscosity η(D, T), D = √(½ tr D²) the strain-rate magnitude.
 struct Rheology {
   enum class Model { newtonian, smd } model = Model::newtonian;
-  double viscosity = 0;                      // Pa s; newtonian. 0: inviscid
-  double flow_index = 0.5;                   // n; smd
-  std::array<double, 2> jump_number{0, 0};   // J hot, J cold ([P] 6-3: J_min, J_max); equal without heat
-  double yield_stress = 1;                   // τ0, Pa
-  double consistency = 1;                    // K, Pa s^n
+  double viscosity = 0;                     // Pa s; newtonian. 0: inviscid
+  double flow_index = 0.5;                  // n; smd
+  std::array<double, 2> jump_number{0, 0};  // J hot, J cold ([P] 6-3: J_min, J_max); equal without heat
+  double yield_stress = 1;                  // τ0, Pa
+  double consistency = 1;                   // K, Pa s^n
 };
 
 struct Heat {
-  double diffusivity = 0;                        // k, m²/s
+  double diffusivity = 0;                              // k, m²/s
   std::optional<std::array<double, 2>> melting_range;  // T_min, T_max of [P] 6-3, the scene's temperature unit
-  double initial_bottom = 0, initial_top = 0;    // linear in height over the fluid's extent at the start
+  double initial_bottom = 0, initial_top = 0;          // linear in height over the fluid's extent at the start
 };
 
 /// One body of the fluid: a region filled with particles.
 struct Body {
   Shape shape;
-  std::array<double, 3> velocity{};       // m/s at the start
-  std::optional<double> temperature;      // overrides Heat::initial_* for this body
+  std::array<double, 3> velocity{};   // m/s at the start
+  std::optional<double> temperature;  // overrides Heat::initial_* for this body
 };
 
 struct Fluid {
   std::vector<Body> bodies;
-  std::optional<long long> particles;     // asked number over all bodies; the spacing follows
-  std::optional<double> spacing;          // m; or the spacing itself (exactly one of the two)
-  double density = 1000;                  // ρ0, kg/m³
+  std::optional<long long> particles;  // asked number over all bodies; the spacing follows
+  std::optional<double> spacing;       // m; or the spacing itself (exactly one of the two)
+  double density = 1000;               // ρ0, kg/m³
   Rheology rheology;
   std::optional<Heat> heat;
   Place place;
@@ -130,39 +131,39 @@ struct Numerics {
   Precision precision = Precision::single;
   Resort resort = Resort::when_due;
   KernelKind kernel = KernelKind::wendland_c2;
-  double smoothing_ratio = 1.3;           // smoothing length h / spacing
-  double skin = 0.2;                      // of the list, in spacings
+  double smoothing_ratio = 1.3;  // smoothing length h / spacing
+  double skin = 0.2;             // of the list, in spacings
   IntegratorKind integrator = IntegratorKind::leap_frog;
   StateEquation state_equation = StateEquation::tait;
-  double gamma = 7;                       // Tait exponent
-  std::optional<double> sound_speed;      // m/s; default 10 × the largest speed expected
-  double artificial_viscosity = 0.1;      // α; 0: no term
+  double gamma = 7;                   // Tait exponent
+  std::optional<double> sound_speed;  // m/s; default 10 × the largest speed expected
+  double artificial_viscosity = 0.1;  // α; 0: no term
   std::optional<Xsph> xsph;
   double courant_sound = 0.2, courant_viscous = 0.1, courant_force = 0.25, courant_conduction = 0.4;
-  std::optional<double> fixed_dt;         // s; overrides the adaptive step
+  std::optional<double> fixed_dt;  // s; overrides the adaptive step
 };
 
 // ---- the whole --------------------------------------------------------------------------------------------------
 
 struct Run {
-  double end_time = 0;                        // s
-  std::optional<long long> max_steps;         // stop early, for measuring
+  double end_time = 0;                 // s
+  std::optional<long long> max_steps;  // stop early, for measuring
 };
 
 struct Output {
-  double frames_per_second = 25;              // 0: none
-  std::vector<std::string> fields;            // empty: all that the scene has
-  double series_every = 0;                    // s; 0: with the frames
-  double checkpoint_every = 300;              // s of wall time; 0: only at the end and on signals
+  double frames_per_second = 25;    // 0: none
+  std::vector<std::string> fields;  // empty: all that the scene has
+  double series_every = 0;          // s; 0: with the frames
+  double checkpoint_every = 300;    // s of wall time; 0: only at the end and on signals
   int checkpoints_kept = 2;
 };
 
 struct Scene {
-  std::string title, file, text;              // text: the file as read (after --set), stored with the run
+  std::string title, file, text;  // text: the file as read (after --set), stored with the run
   int dimensions = 3;
-  std::array<double, 3> gravity{0, 0, -9.81}; // m/s²; 2-D: x, y
-  std::array<bool, 3> periodic{};             // per axis; needs the domain
-  std::optional<Box> domain;                  // particles that leave it are removed; default: generous bounding box
+  std::array<double, 3> gravity{0, 0, -9.81};  // m/s²; 2-D: x, y
+  std::array<bool, 3> periodic{};              // per axis; needs the domain
+  std::optional<Box> domain;                   // particles that leave it are removed; default: generous bounding box
   Fluid fluid;
   std::vector<Boundary> boundaries;
   Numerics numerics;

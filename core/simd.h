@@ -1,6 +1,6 @@
 // Lanes: N numbers handled as one. The hot loops are written once in terms of Lanes<Real, N>; N = 1 is the plain scalar
-// twin that the tests hold them against. Machine instructions stand in this file only. (The zero-masked forms with a full
-// mask are the plain instructions; g++ 12 warns of undefined values in its own header for the unmasked ones.)
+// twin that the tests hold them against. Machine instructions stand in this file only. (The zero-masked forms with a
+// full mask are the plain instructions; g++ 12 warns of undefined values in its own header for the unmasked ones.)
 #pragma once
 
 #include <immintrin.h>
@@ -22,27 +22,13 @@ inline constexpr int native_lanes =
 #endif
 
 /// The compilers' vector types by name: g++ 12 does not take a vector size that depends on a template's parameters.
-template <class Real, int N>
-struct NativeVector;
-template <>
-struct NativeVector<float, 8> {
-  typedef float type __attribute__((vector_size(32)));
-};
-template <>
-struct NativeVector<float, 16> {
-  typedef float type __attribute__((vector_size(64)));
-};
-template <>
-struct NativeVector<double, 4> {
-  typedef double type __attribute__((vector_size(32)));
-};
-template <>
-struct NativeVector<double, 8> {
-  typedef double type __attribute__((vector_size(64)));
-};
+template <class Real, int N> struct NativeVector;
+template <> struct NativeVector<float, 8> { typedef float type __attribute__((vector_size(32))); };
+template <> struct NativeVector<float, 16> { typedef float type __attribute__((vector_size(64))); };
+template <> struct NativeVector<double, 4> { typedef double type __attribute__((vector_size(32))); };
+template <> struct NativeVector<double, 8> { typedef double type __attribute__((vector_size(64))); };
 
-template <class Real, int N>
-struct Lanes {
+template <class Real, int N> struct Lanes {
   using Native = typename NativeVector<Real, N>::type;
   Native v;
 
@@ -55,13 +41,21 @@ struct Lanes {
   friend Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
   friend Lanes operator/(Lanes a, Lanes b) { return a.v / b.v; }
   friend Lanes operator-(Lanes a) { return -a.v; }
-  Lanes& operator+=(Lanes b) { v += b.v; return *this; }
-  Lanes& operator-=(Lanes b) { v -= b.v; return *this; }
-  Lanes& operator*=(Lanes b) { v *= b.v; return *this; }
+  Lanes& operator+=(Lanes b) {
+    v += b.v;
+    return *this;
+  }
+  Lanes& operator-=(Lanes b) {
+    v -= b.v;
+    return *this;
+  }
+  Lanes& operator*=(Lanes b) {
+    v *= b.v;
+    return *this;
+  }
 };
 
-template <class Real>
-struct Lanes<Real, 1> {
+template <class Real> struct Lanes<Real, 1> {
   Real v;
 
   Lanes() = default;
@@ -72,9 +66,18 @@ struct Lanes<Real, 1> {
   friend Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
   friend Lanes operator/(Lanes a, Lanes b) { return a.v / b.v; }
   friend Lanes operator-(Lanes a) { return -a.v; }
-  Lanes& operator+=(Lanes b) { v += b.v; return *this; }
-  Lanes& operator-=(Lanes b) { v -= b.v; return *this; }
-  Lanes& operator*=(Lanes b) { v *= b.v; return *this; }
+  Lanes& operator+=(Lanes b) {
+    v += b.v;
+    return *this;
+  }
+  Lanes& operator-=(Lanes b) {
+    v -= b.v;
+    return *this;
+  }
+  Lanes& operator*=(Lanes b) {
+    v *= b.v;
+    return *this;
+  }
 };
 
 // ---- elementwise functions ------------------------------------------------------------------------------------------
@@ -93,41 +96,49 @@ inline unsigned less_mask(Lanes<float, 8> a, Lanes<float, 8> b) {
 /// 8 consecutive numbers from memory.
 inline Lanes<float, 8> load_8(const float* p) { return Lanes<float, 8>((Lanes<float, 8>::Native)_mm256_loadu_ps(p)); }
 
-template <class Real, int N>
-inline Lanes<Real, N> max(Lanes<Real, N> a, Lanes<Real, N> b) {
+template <class Real, int N> inline Lanes<Real, N> max(Lanes<Real, N> a, Lanes<Real, N> b) {
   using V [[maybe_unused]] = decltype(a.v);
   if constexpr (N == 1) return std::max(a.v, b.v);
 #if defined(__AVX512F__)
-  else if constexpr (N == 16) return {(V)_mm512_maskz_max_ps(0xffff, (__m512)a.v, (__m512)b.v)};
-  else if constexpr (N == 8 && sizeof(Real) == 8) return {(V)_mm512_maskz_max_pd(0xff, (__m512d)a.v, (__m512d)b.v)};
+  else if constexpr (N == 16)
+    return {(V)_mm512_maskz_max_ps(0xffff, (__m512)a.v, (__m512)b.v)};
+  else if constexpr (N == 8 && sizeof(Real) == 8)
+    return {(V)_mm512_maskz_max_pd(0xff, (__m512d)a.v, (__m512d)b.v)};
 #endif
-  else if constexpr (N == 8) return {(V)_mm256_max_ps((__m256)a.v, (__m256)b.v)};
-  else return {(V)_mm256_max_pd((__m256d)a.v, (__m256d)b.v)};
+  else if constexpr (N == 8)
+    return {(V)_mm256_max_ps((__m256)a.v, (__m256)b.v)};
+  else
+    return {(V)_mm256_max_pd((__m256d)a.v, (__m256d)b.v)};
 }
-template <class Real, int N>
-inline Lanes<Real, N> min(Lanes<Real, N> a, Lanes<Real, N> b) {
+template <class Real, int N> inline Lanes<Real, N> min(Lanes<Real, N> a, Lanes<Real, N> b) {
   using V [[maybe_unused]] = decltype(a.v);
   if constexpr (N == 1) return std::min(a.v, b.v);
 #if defined(__AVX512F__)
-  else if constexpr (N == 16) return {(V)_mm512_maskz_min_ps(0xffff, (__m512)a.v, (__m512)b.v)};
-  else if constexpr (N == 8 && sizeof(Real) == 8) return {(V)_mm512_maskz_min_pd(0xff, (__m512d)a.v, (__m512d)b.v)};
+  else if constexpr (N == 16)
+    return {(V)_mm512_maskz_min_ps(0xffff, (__m512)a.v, (__m512)b.v)};
+  else if constexpr (N == 8 && sizeof(Real) == 8)
+    return {(V)_mm512_maskz_min_pd(0xff, (__m512d)a.v, (__m512d)b.v)};
 #endif
-  else if constexpr (N == 8) return {(V)_mm256_min_ps((__m256)a.v, (__m256)b.v)};
-  else return {(V)_mm256_min_pd((__m256d)a.v, (__m256d)b.v)};
+  else if constexpr (N == 8)
+    return {(V)_mm256_min_ps((__m256)a.v, (__m256)b.v)};
+  else
+    return {(V)_mm256_min_pd((__m256d)a.v, (__m256d)b.v)};
 }
 
-/// 1/a to the precision of Real less about one bit: the hardware's estimate and one Newton step in single, a division in
-/// double.
-template <class Real, int N>
-inline Lanes<Real, N> reciprocal(Lanes<Real, N> a) {
+/// 1/a to the precision of Real less about one bit: the hardware's estimate and one Newton step in single, a division
+/// in double.
+template <class Real, int N> inline Lanes<Real, N> reciprocal(Lanes<Real, N> a) {
   if constexpr (sizeof(Real) == 4 && N > 1) {
     Lanes<Real, N> e;
 #if defined(__AVX512F__)
-    if constexpr (N == 16) e.v = (typename Lanes<Real, N>::Native)_mm512_maskz_rcp14_ps(0xffff, (__m512)a.v);
+    if constexpr (N == 16)
+      e.v = (typename Lanes<Real, N>::Native)_mm512_maskz_rcp14_ps(0xffff, (__m512)a.v);
     else
 #endif
-    if constexpr (N == 8) e.v = (typename Lanes<Real, N>::Native)_mm256_rcp_ps((__m256)a.v);
-    else return Lanes<Real, N>(Real(1)) / a;
+        if constexpr (N == 8)
+      e.v = (typename Lanes<Real, N>::Native)_mm256_rcp_ps((__m256)a.v);
+    else
+      return Lanes<Real, N>(Real(1)) / a;
     return e * (Lanes<Real, N>(Real(2)) - a * e);
   } else {
     return Lanes<Real, N>(Real(1)) / a;
@@ -135,14 +146,15 @@ inline Lanes<Real, N> reciprocal(Lanes<Real, N> a) {
 }
 
 /// scale · √a for a > 0, to the same precision: with e ≈ 1/√a and s = a e, one Newton step is √a ≈ s (3 − s e)/2.
-template <class Real, int N>
-inline Lanes<Real, N> scaled_sqrt(Lanes<Real, N> a, Real scale) {
+template <class Real, int N> inline Lanes<Real, N> scaled_sqrt(Lanes<Real, N> a, Real scale) {
   using L = Lanes<Real, N>;
-  if constexpr (N == 1) return scale * std::sqrt(a.v);
+  if constexpr (N == 1)
+    return scale * std::sqrt(a.v);
   else if constexpr (sizeof(Real) == 4) {
     L e;
 #if defined(__AVX512F__)
-    if constexpr (N == 16) e.v = (typename L::Native)_mm512_maskz_rsqrt14_ps(0xffff, (__m512)a.v);
+    if constexpr (N == 16)
+      e.v = (typename L::Native)_mm512_maskz_rsqrt14_ps(0xffff, (__m512)a.v);
     else
 #endif
       e.v = (typename L::Native)_mm256_rsqrt_ps((__m256)a.v);
@@ -151,7 +163,8 @@ inline Lanes<Real, N> scaled_sqrt(Lanes<Real, N> a, Real scale) {
   } else {
     L root;
 #if defined(__AVX512F__)
-    if constexpr (N == 8) root.v = (typename L::Native)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v);
+    if constexpr (N == 8)
+      root.v = (typename L::Native)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v);
     else
 #endif
       root.v = (typename L::Native)_mm256_sqrt_pd((__m256d)a.v);
@@ -159,9 +172,9 @@ inline Lanes<Real, N> scaled_sqrt(Lanes<Real, N> a, Real scale) {
   }
 }
 
-template <class Real, int N>
-inline Lanes<Real, N> exp_of(Lanes<Real, N> a) {
-  if constexpr (N == 1) return std::exp(a.v);
+template <class Real, int N> inline Lanes<Real, N> exp_of(Lanes<Real, N> a) {
+  if constexpr (N == 1)
+    return std::exp(a.v);
   else {
     Lanes<Real, N> e;
     for (int k = 0; k < N; ++k) e.v[k] = std::exp(a.v[k]);
@@ -173,27 +186,30 @@ inline Lanes<Real, N> exp_of(Lanes<Real, N> a) {
 // I particles i against J particles j fill I × J = N lanes: lane k holds i = k / J and j = k % J.
 
 /// I values from memory, each repeated N / I times.
-template <int I, class Real, int N>
-inline Lanes<Real, N> load_i(const Real* p) {
+template <int I, class Real, int N> inline Lanes<Real, N> load_i(const Real* p) {
   Lanes<Real, N> r;
-  if constexpr (N == 1) r.v = *p;
-  else for (int k = 0; k < N; ++k) r.v[k] = p[k / (N / I)];
+  if constexpr (N == 1)
+    r.v = *p;
+  else
+    for (int k = 0; k < N; ++k) r.v[k] = p[k / (N / I)];
   return r;
 }
 
 /// J values from memory, the whole repeated N / J times.
-template <int J, class Real, int N>
-inline Lanes<Real, N> load_j(const Real* p) {
+template <int J, class Real, int N> inline Lanes<Real, N> load_j(const Real* p) {
   using L = Lanes<Real, N>;
-  if constexpr (J == 1) return L(*p);
+  if constexpr (J == 1)
+    return L(*p);
   else {
     using V = typename L::Native;
 #if defined(__AVX512F__)
-    if constexpr (sizeof(L) == 64 && sizeof(Real) == 4 && J == 4) return {(V)_mm512_maskz_broadcast_f32x4(0xffff, _mm_loadu_ps(p))};
-    else if constexpr (sizeof(L) == 64 && sizeof(Real) == 8 && J == 2) return {(V)_mm512_maskz_broadcast_f64x2(0xff, _mm_loadu_pd(p))};
+    if constexpr (sizeof(L) == 64 && sizeof(Real) == 4 && J == 4)
+      return {(V)_mm512_maskz_broadcast_f32x4(0xffff, _mm_loadu_ps(p))};
+    else if constexpr (sizeof(L) == 64 && sizeof(Real) == 8 && J == 2)
+      return {(V)_mm512_maskz_broadcast_f64x2(0xff, _mm_loadu_pd(p))};
     else
 #endif
-    if constexpr (sizeof(L) == 32 && sizeof(Real) == 4 && J == 2)
+        if constexpr (sizeof(L) == 32 && sizeof(Real) == 4 && J == 2)
       return {(V)_mm256_castpd_ps(_mm256_broadcast_sd(reinterpret_cast<const double*>(p)))};
     else {
       L r;
@@ -204,12 +220,13 @@ inline Lanes<Real, N> load_j(const Real* p) {
 }
 
 /// Adds up the J lanes of each i, pairwise: out[0 .. I).
-template <int I, class Real, int N>
-inline void sum_j(Lanes<Real, N> a, Real* out) {
-  if constexpr (N == 1) out[0] = a.v;
+template <int I, class Real, int N> inline void sum_j(Lanes<Real, N> a, Real* out) {
+  if constexpr (N == 1)
+    out[0] = a.v;
   else {
     constexpr int J = N / I;
-    if constexpr (J == 1) for (int i = 0; i < I; ++i) out[i] = a.v[i];
+    if constexpr (J == 1)
+      for (int i = 0; i < I; ++i) out[i] = a.v[i];
 #if defined(__AVX512F__)
     else if constexpr (J == 4 && N == 16) {
       __m512 s = (__m512)a.v;

@@ -15,12 +15,12 @@ struct SnapshotField {
 };
 
 struct Snapshot {
-  double time = 0;                  // s
+  double time = 0;  // s
   std::int64_t step = 0;
   int dimensions = 3;
-  double spacing = 0;               // m; initial distance between particles
-  std::vector<std::int64_t> id;     // ascending
-  std::vector<double> position;     // m; 3 × count (2-D: z = 0)
+  double spacing = 0;            // m; initial distance between particles
+  std::vector<std::int64_t> id;  // ascending
+  std::vector<double> position;  // m; 3 × count (2-D: z = 0)
   std::vector<SnapshotField> fields;
 
   std::size_t count() const { return id.size(); }

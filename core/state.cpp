@@ -9,18 +9,23 @@ namespace molten {
 
 const char* name_of(Limit limit) {
   switch (limit) {
-    case Limit::sound: return "sound";
-    case Limit::viscous: return "viscous";
-    case Limit::force: return "force";
-    case Limit::conduction: return "conduction";
-    case Limit::fixed: return "fixed";
-    case Limit::output: return "output";
+    case Limit::sound:
+      return "sound";
+    case Limit::viscous:
+      return "viscous";
+    case Limit::force:
+      return "force";
+    case Limit::conduction:
+      return "conduction";
+    case Limit::fixed:
+      return "fixed";
+    case Limit::output:
+      return "output";
   }
   return "";
 }
 
-template <int Dim, class Real>
-void State<Dim, Real>::archive(Archive& a) {
+template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
   a.value("clock/time", clock.time);
   a.value("clock/step", clock.step);
   a.value("clock/dt", clock.dt);
@@ -37,13 +42,16 @@ void State<Dim, Real>::archive(Archive& a) {
 template <int Dim, class Real>
 State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Contact<Dim> contact,
                             const Start& start) {
-  State<Dim, Real> s{features,
-                     parameters,
-                     std::move(contact),
-                     Particles<Dim, Real>(features.columns()),
-                     Neighbours<Dim, Real>({parameters.spacing, parameters.support_radius, parameters.skin},
-                                           parameters.domain),
-                     {}, {}, {}, {}};
+  State<Dim, Real> s{
+      features,
+      parameters,
+      std::move(contact),
+      Particles<Dim, Real>(features.columns()),
+      Neighbours<Dim, Real>({parameters.spacing, parameters.support_radius, parameters.skin}, parameters.domain),
+      {},
+      {},
+      {},
+      {}};
   Particles<Dim, Real>& p = s.particles;
   const std::size_t count = start.position.size();
   p.resize((count + cluster_size - 1) / cluster_size * cluster_size, count);
@@ -65,8 +73,8 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
   return s;
 }
 
-#define MOLTEN_INSTANTIATE(Dim, Real)                                                                       \
-  template struct State<Dim, Real>;                                                                        \
+#define MOLTEN_INSTANTIATE(Dim, Real) \
+  template struct State<Dim, Real>;   \
   template State<Dim, Real> make_state(const Features&, const Parameters<Dim>&, Contact<Dim>, const Start&);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)

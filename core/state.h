@@ -19,32 +19,31 @@ enum class Limit : int { sound, viscous, force, conduction, fixed, output };
 const char* name_of(Limit limit);
 
 struct Clock {
-  double time = 0;         // s
+  double time = 0;  // s
   std::int64_t step = 0;
   double dt = 0;           // s; of this step, once chosen
   double previous_dt = 0;  // s; of the step before
   Limit limit = Limit::sound;
-  double stop = 1e300;     // s; the next time that a step must end on
+  double stop = 1e300;  // s; the next time that a step must end on
 };
 
 /// The largest values that the last rates saw; they bound the next time step.
 struct Extremes {
-  double speed2 = 0;                // m²/s²
-  double acceleration2 = 0;         // m²/s⁴
-  double kinematic_viscosity = 0;   // m²/s
-  double xsph2 = 0;                 // m²/s²
+  double speed2 = 0;               // m²/s²
+  double acceleration2 = 0;        // m²/s⁴
+  double kinematic_viscosity = 0;  // m²/s
+  double xsph2 = 0;                // m²/s²
   bool finite = true;
 };
 
-template <int Dim, class Real>
-struct State {
-  Features features;                  // fixed for the run
+template <int Dim, class Real> struct State {
+  Features features;  // fixed for the run
   Parameters<Dim> parameters;
   Contact<Dim> contact;
   Particles<Dim, Real> particles;
-  Neighbours<Dim, Real> neighbours;   // good between sorts
+  Neighbours<Dim, Real> neighbours;     // good between sorts
   std::vector<std::uint8_t> near_wall;  // by cluster: a wall may be met before the next sort
-  Clock clock;                        // this step
+  Clock clock;                          // this step
   Extremes extremes;
   Timer timer;
 

@@ -9,8 +9,7 @@
 
 namespace molten {
 
-template <int Dim, class Real>
-void step(State<Dim, Real>& s) {
+template <int Dim, class Real> void step(State<Dim, Real>& s) {
   if (s.neighbours.is_due() || s.parameters.sort_each_step) sort_and_list(s);
   if (s.features.stress) find_viscosity(s);
   find_rates(s);
@@ -23,8 +22,7 @@ void step(State<Dim, Real>& s) {
   ++s.clock.step;
 }
 
-template <int Dim, class Real>
-void sort_and_list(State<Dim, Real>& s) {
+template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("sort and list");
   s.neighbours.rebuild(s.particles);
   mark_near_wall(s);
@@ -32,8 +30,7 @@ void sort_and_list(State<Dim, Real>& s) {
 }
 
 /// A cluster is near a wall if a particle of it may touch one within a spacing of its way.
-template <int Dim, class Real>
-void mark_near_wall(State<Dim, Real>& s) {
+template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s) {
   s.near_wall.assign(s.neighbours.clusters(), 0);
   if (!s.features.contact) return;
   const auto x = s.particles[position];
@@ -47,8 +44,7 @@ void mark_near_wall(State<Dim, Real>& s) {
   });
 }
 
-template <int Dim, class Real>
-void require_sane(const State<Dim, Real>& s) {
+template <int Dim, class Real> void require_sane(const State<Dim, Real>& s) {
   if (!s.extremes.finite) throw Error(ExitCode::diverged, find_non_finite(s));
   const double speed = std::sqrt(s.extremes.speed2), sound = s.parameters.eos.sound_speed;
   if (speed > 30 * sound)
@@ -58,8 +54,7 @@ void require_sane(const State<Dim, Real>& s) {
                                         "add numerics.xsph");
 }
 
-template <int Dim, class Real>
-void choose_time_step(State<Dim, Real>& s) {
+template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
   const Parameters<Dim>& p = s.parameters;
   const double h = p.smoothing_length;
   Clock& clock = s.clock;
@@ -83,15 +78,17 @@ void choose_time_step(State<Dim, Real>& s) {
   }
   // Land on the stop; two halves rather than a step and a sliver. (The round-off of summed steps is no sliver.)
   const double left = clock.stop - clock.time;
-  if (clock.dt >= left * (1 - 1e-9)) clock.dt = left, clock.limit = Limit::output;
-  else if (2 * clock.dt > left) limit(left / 2, Limit::output);
+  if (clock.dt >= left * (1 - 1e-9))
+    clock.dt = left, clock.limit = Limit::output;
+  else if (2 * clock.dt > left)
+    limit(left / 2, Limit::output);
 }
 
-#define MOLTEN_INSTANTIATE(Dim, Real)                       \
-  template void step(State<Dim, Real>&);                    \
-  template void sort_and_list(State<Dim, Real>&);           \
-  template void mark_near_wall(State<Dim, Real>&);          \
-  template void require_sane(const State<Dim, Real>&);      \
+#define MOLTEN_INSTANTIATE(Dim, Real)                  \
+  template void step(State<Dim, Real>&);               \
+  template void sort_and_list(State<Dim, Real>&);      \
+  template void mark_near_wall(State<Dim, Real>&);     \
+  template void require_sane(const State<Dim, Real>&); \
   template void choose_time_step(State<Dim, Real>&);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)

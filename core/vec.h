@@ -7,38 +7,57 @@
 namespace molten {
 
 /// f(0), f(1), … f(n − 1) with the index known at compile time: the compilers then keep lanes in registers.
-template <int n, class F>
-__attribute__((always_inline)) inline constexpr void unrolled(F&& f) {
+template <int n, class F> __attribute__((always_inline)) inline constexpr void unrolled(F&& f) {
   [&]<int... k>(std::integer_sequence<int, k...>) __attribute__((always_inline)) {
     (f(std::integral_constant<int, k>{}), ...);
-  }(std::make_integer_sequence<int, n>{});
+  }
+  (std::make_integer_sequence<int, n>{});
 }
 
-template <int Dim, class T>
-struct Vec {
+template <int Dim, class T> struct Vec {
   std::array<T, Dim> c;
 
   T& operator[](int d) { return c[d]; }
   const T& operator[](int d) const { return c[d]; }
-  static Vec filled(T s) { Vec r; r.c.fill(s); return r; }
+  static Vec filled(T s) {
+    Vec r;
+    r.c.fill(s);
+    return r;
+  }
 
-  friend Vec operator+(const Vec& a, const Vec& b) { Vec r; unrolled<Dim>([&](auto d) { r[d] = a[d] + b[d]; }); return r; }
-  friend Vec operator-(const Vec& a, const Vec& b) { Vec r; unrolled<Dim>([&](auto d) { r[d] = a[d] - b[d]; }); return r; }
-  friend Vec operator*(const T& s, const Vec& a) { Vec r; unrolled<Dim>([&](auto d) { r[d] = s * a[d]; }); return r; }
-  Vec& operator+=(const Vec& b) { unrolled<Dim>([&](auto d) { c[d] += b[d]; }); return *this; }
-  Vec& operator-=(const Vec& b) { unrolled<Dim>([&](auto d) { c[d] -= b[d]; }); return *this; }
+  friend Vec operator+(const Vec& a, const Vec& b) {
+    Vec r;
+    unrolled<Dim>([&](auto d) { r[d] = a[d] + b[d]; });
+    return r;
+  }
+  friend Vec operator-(const Vec& a, const Vec& b) {
+    Vec r;
+    unrolled<Dim>([&](auto d) { r[d] = a[d] - b[d]; });
+    return r;
+  }
+  friend Vec operator*(const T& s, const Vec& a) {
+    Vec r;
+    unrolled<Dim>([&](auto d) { r[d] = s * a[d]; });
+    return r;
+  }
+  Vec& operator+=(const Vec& b) {
+    unrolled<Dim>([&](auto d) { c[d] += b[d]; });
+    return *this;
+  }
+  Vec& operator-=(const Vec& b) {
+    unrolled<Dim>([&](auto d) { c[d] -= b[d]; });
+    return *this;
+  }
 };
 
-template <int Dim, class T>
-T dot(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
+template <int Dim, class T> T dot(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
   T s = a[0] * b[0];
   unrolled<Dim - 1>([&](auto d) { s = s + a[d + 1] * b[d + 1]; });
   return s;
 }
 
 /// Components in the order xx, yy, xy (2-D) or xx, yy, zz, xy, xz, yz (3-D).
-template <int Dim, class T>
-struct SymTensor {
+template <int Dim, class T> struct SymTensor {
   static constexpr int size = Dim * (Dim + 1) / 2;
   std::array<T, size> c;
 
@@ -47,7 +66,11 @@ struct SymTensor {
   const T& operator()(int a, int b) const { return c[index(a, b)]; }
   T& operator[](int k) { return c[k]; }
   const T& operator[](int k) const { return c[k]; }
-  static SymTensor filled(T s) { SymTensor r; r.c.fill(s); return r; }
+  static SymTensor filled(T s) {
+    SymTensor r;
+    r.c.fill(s);
+    return r;
+  }
 
   friend SymTensor operator+(const SymTensor& a, const SymTensor& b) {
     SymTensor r;
@@ -59,7 +82,10 @@ struct SymTensor {
     unrolled<size>([&](auto k) { r[k] = s * a[k]; });
     return r;
   }
-  SymTensor& operator+=(const SymTensor& b) { unrolled<size>([&](auto k) { c[k] += b[k]; }); return *this; }
+  SymTensor& operator+=(const SymTensor& b) {
+    unrolled<size>([&](auto k) { c[k] += b[k]; });
+    return *this;
+  }
   friend Vec<Dim, T> operator*(const SymTensor& s, const Vec<Dim, T>& x) {
     Vec<Dim, T> r;
     unrolled<Dim>([&](auto a) {
@@ -71,8 +97,7 @@ struct SymTensor {
 };
 
 /// a bᵀ + b aᵀ
-template <int Dim, class T>
-SymTensor<Dim, T> twice_symmetric(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
+template <int Dim, class T> SymTensor<Dim, T> twice_symmetric(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
   SymTensor<Dim, T> r;
   unrolled<Dim>([&](auto i) {
     unrolled<Dim>([&](auto j) {
@@ -83,8 +108,7 @@ SymTensor<Dim, T> twice_symmetric(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
 }
 
 /// tr S²
-template <int Dim, class T>
-T square_trace(const SymTensor<Dim, T>& s) {
+template <int Dim, class T> T square_trace(const SymTensor<Dim, T>& s) {
   T diagonal = T(0), off = T(0);
   unrolled<Dim>([&](auto k) { diagonal = diagonal + s[k] * s[k]; });
   unrolled<SymTensor<Dim, T>::size - Dim>([&](auto k) { off = off + s[Dim + k] * s[Dim + k]; });

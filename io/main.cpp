@@ -24,10 +24,12 @@ struct Commands {
 };
 
 void add_run(CLI::App& app, Commands& c) {
-  CLI::App* run = app.add_subcommand("run", "Run a scene\n  molten run scenes/bunny.toml -o runs/bunny --set run.end_time=0.1");
+  CLI::App* run =
+      app.add_subcommand("run", "Run a scene\n  molten run scenes/bunny.toml -o runs/bunny --set run.end_time=0.1");
   run->add_option("scene", c.scene, "Scene file (TOML; docs/scenes.md)")->required();
   run->add_option("-o,--output", c.run.folder, "Folder of the run (default: runs/<name of the scene>)");
-  run->add_option("--threads", c.run.threads, "Threads (default: OMP_NUM_THREADS or all cores)")->check(CLI::Range(1, 4096));
+  run->add_option("--threads", c.run.threads, "Threads (default: OMP_NUM_THREADS or all cores)")
+      ->check(CLI::Range(1, 4096));
   run->add_option("--set", c.overrides, "Override a key of the scene: key=value")->allow_extra_args(false);
   run->add_flag("--overwrite", c.run.overwrite, "Replace a run that the folder already holds");
   run->callback([&] {
@@ -39,33 +41,39 @@ void add_run(CLI::App& app, Commands& c) {
 }
 
 void add_resume(CLI::App& app, Commands& c) {
-  CLI::App* resume = app.add_subcommand("resume", "Go on from a run's newest checkpoint\n  molten resume runs/bunny --set run.end_time=0.8");
+  CLI::App* resume = app.add_subcommand(
+      "resume", "Go on from a run's newest checkpoint\n  molten resume runs/bunny --set run.end_time=0.8");
   resume->add_option("run", c.resume.folder, "Folder of the run")->required();
   resume->add_option("--threads", c.resume.threads, "Threads")->check(CLI::Range(1, 4096));
-  resume->add_option("--set", c.resume.overrides, "Override a key of [run] or [output]: key=value")->allow_extra_args(false);
+  resume->add_option("--set", c.resume.overrides, "Override a key of [run] or [output]: key=value")
+      ->allow_extra_args(false);
   resume->add_flag("--force", c.resume.force, "Go on although the scene, a mesh or the numerics changed");
   resume->callback([&] { c.chosen = [&] { return resume_run(c.resume); }; });
 }
 
 void add_check(CLI::App& app, Commands& c) {
-  CLI::App* check = app.add_subcommand("check", "Check a scene and say what a run would take\n  molten check scenes/volcano.toml");
+  CLI::App* check =
+      app.add_subcommand("check", "Check a scene and say what a run would take\n  molten check scenes/volcano.toml");
   check->add_option("scene", c.scene, "Scene file")->required();
   check->add_option("--set", c.overrides, "Override a key of the scene: key=value")->allow_extra_args(false);
   check->callback([&] { c.chosen = [&] { return check_scene(molten::read_scene(c.scene, c.overrides)); }; });
 }
 
 void add_info(CLI::App& app, Commands& c) {
-  CLI::App* info = app.add_subcommand("info", "Say what a run folder, frame, checkpoint or mesh holds\n  molten info runs/bunny");
+  CLI::App* info =
+      app.add_subcommand("info", "Say what a run folder, frame, checkpoint or mesh holds\n  molten info runs/bunny");
   info->add_option("file", c.scene, "Run folder, .hdf frame, .h5 checkpoint, or mesh")->required();
   info->callback([&] { c.chosen = [&] { return molten::show_info(c.scene); }; });
 }
 
 void add_render(CLI::App& app, Commands& c) {
-  CLI::App* render = app.add_subcommand("render", "Draw frames to PNG\n  molten render runs/bunny --frames last --field temperature");
+  CLI::App* render =
+      app.add_subcommand("render", "Draw frames to PNG\n  molten render runs/bunny --frames last --field temperature");
   molten::PictureOptions& p = c.render.picture;
   render->add_option("run", c.render.run, "Folder of the run")->required();
   render->add_option("-o,--output", c.render.output, "Folder for the pictures (default: RUN/pictures)");
-  render->add_option("--frames", c.render.frames, "all, last, numbers 0,10,20 or a range 0:100:10")->capture_default_str();
+  render->add_option("--frames", c.render.frames, "all, last, numbers 0,10,20 or a range 0:100:10")
+      ->capture_default_str();
   render->add_option("--field", p.field, "Field to colour by (default: temperature, else speed)");
   render->add_option("--range", p.range, "Lowest and highest value of the colours");
   render->add_option("--eye", p.eye, "Where the camera is: x y z, m");
@@ -80,7 +88,8 @@ void add_render(CLI::App& app, Commands& c) {
 }
 
 void add_compare(CLI::App& app, Commands& c) {
-  CLI::App* compare = app.add_subcommand("compare", "Differences between the last common frames of two runs, or two frames");
+  CLI::App* compare =
+      app.add_subcommand("compare", "Differences between the last common frames of two runs, or two frames");
   compare->add_option("a", c.scene, "Run folder or frame")->required();
   compare->add_option("b", c.other, "Run folder or frame")->required();
   compare->callback([&] { c.chosen = [&] { return molten::compare(c.scene, c.other); }; });
@@ -115,7 +124,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("molten ") + MOLTEN_VERSION + " (" + MOLTEN_COMMIT + ")");
   app.require_subcommand(1);
   app.failure_message(complaint);
-  app.footer("Exit codes: 0 done, 2 usage or scene, 3 mesh or overlap, 4 diverged, 5 files, 6 checkpoint, 75 stopped, resumable");
+  app.footer(
+      "Exit codes: 0 done, 2 usage or scene, 3 mesh or overlap, 4 diverged, 5 files, 6 checkpoint, 75 stopped, "
+      "resumable");
   Commands commands;
   add_run(app, commands);
   add_resume(app, commands);

@@ -244,8 +244,8 @@ struct SumsStress {
 };
 
 TEST(PairPass, OnlyIndependentTermsFuse) {
-  static_assert(Fusable<Continuity, PressureForce, ArtificialViscosity<float>, LaminarViscosity<float>, StressForce<3, float>,
-                        HeatConduction<float>, XsphTerm<float>>);
+  static_assert(Fusable<Continuity, PressureForce, ArtificialViscosity<float>, LaminarViscosity<float>,
+                        StressForce<3, float>, HeatConduction<float>, XsphTerm<float>>);
   static_assert(Fusable<StrainRateTerm>);
   static_assert(Fusable<ReadsAcceleration>);
   static_assert(!Fusable<PressureForce, ReadsAcceleration>);

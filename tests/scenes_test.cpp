@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "io/geometry/terrain.h"
 #include "io/hdf5/checkpoint.h"
 #include "io/hdf5/frames.h"
 #include "io/scene/scene_file.h"
-#include "io/geometry/terrain.h"
 #include "tests/program.h"
 #include "tests/temp_folder.h"
 

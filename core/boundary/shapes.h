@@ -8,8 +8,8 @@
 
 namespace molten {
 
-/// Closed, outward-oriented surface of a sphere, box, cylinder, cone or extruded polygon. `edge` (m): longest edge wanted
-/// on curved parts.
+/// Closed, outward-oriented surface of a sphere, box, cylinder, cone or extruded polygon. `edge` (m): longest edge
+/// wanted on curved parts.
 TriangleMesh tessellate(const Shape& shape, double edge);
 
 /// The 2-D outline of a sphere (circle), box (x-y rectangle), cylinder (rectangle base.x ± radius, base.y .. + height),

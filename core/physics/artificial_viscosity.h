@@ -7,8 +7,7 @@
 
 namespace molten {
 
-template <class Real>
-struct ArtificialViscosity {
+template <class Real> struct ArtificialViscosity {
   using Reads = FieldList<Velocity, Compression>;
   using Sums = FieldList<Acceleration>;
   using Radial = FieldList<Acceleration>;

@@ -1,5 +1,5 @@
-// Heat conduction dT/dt = k ∇²T (Cleary & Monaghan; [P] 6-2): dT_i/dt = k Σ 4 m_j/(ρ_i + ρ_j) (T_i − T_j) W'/r, the form that
-// conserves heat to round-off. [P] 6-9 lacks a factor 2: it gives half of ∇²T.
+// Heat conduction dT/dt = k ∇²T (Cleary & Monaghan; [P] 6-2): dT_i/dt = k Σ 4 m_j/(ρ_i + ρ_j) (T_i − T_j) W'/r, the
+// form that conserves heat to round-off. [P] 6-9 lacks a factor 2: it gives half of ∇²T.
 #pragma once
 
 #include <type_traits>
@@ -9,8 +9,7 @@
 
 namespace molten {
 
-template <class Real>
-struct HeatConduction {
+template <class Real> struct HeatConduction {
   using Reads = FieldList<LocalTemperature, Compression>;
   using Sums = FieldList<TemperatureRate>;
   bool on = false;

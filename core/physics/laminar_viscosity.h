@@ -8,8 +8,7 @@
 
 namespace molten {
 
-template <class Real>
-struct LaminarViscosity {
+template <class Real> struct LaminarViscosity {
   using Reads = FieldList<Velocity, Compression>;
   using Sums = FieldList<Acceleration>;
   bool on = false;

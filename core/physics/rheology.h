@@ -13,22 +13,22 @@
 namespace molten {
 
 /// Strain-rate magnitude √(½ tr D²): |du/dy| in simple shear ([P] 6-1 prints ½ (tr D)², which vanishes there).
-template <int Dim, class T>
-T strain_magnitude(const SymTensor<Dim, T>& strain) {
+template <int Dim, class T> T strain_magnitude(const SymTensor<Dim, T>& strain) {
   return std::sqrt(square_trace(strain) / 2);
 }
 
 /// [P]'s dimensionless viscosity; D ≥ 0.
 inline double smd_viscosity(double strain, double jump_number, double flow_index) {
   if (strain <= 1e-30) return jump_number + 1;
-  const double power = flow_index == 0.5 ? 1 / std::sqrt(strain) : std::pow(strain, flow_index - 1);  // [P]'s n is quick
+  const double power =
+      flow_index == 0.5 ? 1 / std::sqrt(strain) : std::pow(strain, flow_index - 1);  // [P]'s n is quick
   return -std::expm1(-(jump_number + 1) * strain) * (power + 1 / strain);
 }
 
 struct Smd {
-  double flow_index = 0.5;         // n
-  double strain_unit = 1;          // γ̇1, 1/s
-  double viscosity_unit = 1;       // τ0/γ̇1, Pa s
+  double flow_index = 0.5;    // n
+  double strain_unit = 1;     // γ̇1, 1/s
+  double viscosity_unit = 1;  // τ0/γ̇1, Pa s
   double jump_hot = 0, jump_cold = 0;
   double melting_low = 0, melting_high = 0;  // T_min, T_max; equal: no dependence on temperature
 

@@ -25,12 +25,11 @@ struct StrainRateTerm {
 };
 
 /// The sum of stresses alone does not feel velocities that alternate from particle to particle: their rate of strain is
-/// zero. So what a pair's approach has beyond the particles' own rates of strain, v_ij·x − ¼ x·(D_i + D_j)·x, of third order in
-/// r where the velocity is smooth, is damped in Monaghan's form with the harmonic mean viscosity η̄:
+/// zero. So what a pair's approach has beyond the particles' own rates of strain, v_ij·x − ¼ x·(D_i + D_j)·x, of third
+/// order in r where the velocity is smooth, is damped in Monaghan's form with the harmonic mean viscosity η̄:
 ///   + Σ m_j 2(d+2) η̄ (v_ij·x − ¼ x·(D_i + D_j)·x)/(ρ_i ρ_j r²) ∇W_ij.
 /// Both parts conserve momentum, linear and angular.
-template <int Dim, class Real>
-struct StressForce {
+template <int Dim, class Real> struct StressForce {
   using Reads = FieldList<Stress, Viscosity, Velocity, Compression>;
   using Sums = FieldList<Acceleration>;
   using Radial = FieldList<Acceleration>;

@@ -1,5 +1,5 @@
-// XSPH (Monaghan; [P] 6-16): Σ (m_j/ρ̄_ij)(v_j − v_i) W_ij, which the integrator adds, times ε, to the velocity ([P], [Q]) or
-// to the rate of the position alone ([D]). The mean density makes it conserve momentum.
+// XSPH (Monaghan; [P] 6-16): Σ (m_j/ρ̄_ij)(v_j − v_i) W_ij, which the integrator adds, times ε, to the velocity ([P],
+// [Q]) or to the rate of the position alone ([D]). The mean density makes it conserve momentum.
 #pragma once
 
 #include <type_traits>
@@ -9,8 +9,7 @@
 
 namespace molten {
 
-template <class Real>
-struct XsphTerm {
+template <class Real> struct XsphTerm {
   using Reads = FieldList<Velocity, Compression>;
   using Sums = FieldList<XsphVelocity>;
   bool on = false;

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-
 #include <cmath>
 #include <fstream>
 
@@ -13,8 +12,8 @@
 #include "core/error.h"
 #include "core/fill.h"
 #include "io/geometry/mesh_file.h"
-#include "io/scene/scene_file.h"
 #include "io/geometry/terrain.h"
+#include "io/scene/scene_file.h"
 
 namespace molten {
 
@@ -65,8 +64,10 @@ void flip(TriangleMesh& mesh) {
 
 Region region_of(const Scene& scene, const Body& body, double edge_spacing) {
   Region region;
-  if (scene.dimensions == 2) region.outline = outline(body.shape, facet_edge * edge_spacing);
-  else region.mesh = surface(scene, body.shape, edge_spacing, true);
+  if (scene.dimensions == 2)
+    region.outline = outline(body.shape, facet_edge * edge_spacing);
+  else
+    region.mesh = surface(scene, body.shape, edge_spacing, true);
   return region;
 }
 
@@ -97,9 +98,10 @@ void require_memory(const Scene& scene, double particles) {
   constexpr double bytes_a_particle = 600;  // state, set-up and one frame at their largest
   const double wanted = particles * bytes_a_particle, there = available_memory();
   if (particles < 2e9 && wanted < there) return;
-  throw Error(ExitCode::usage, fmt::format("{}:{}: fluid: {:.3g} particles need about {:.3g} GB and {:.3g} GB are free; "
-                                           "ask for fewer particles or a larger spacing",
-                                           scene.file, scene.fluid.place.line, particles, wanted / 1e9, there / 1e9));
+  throw Error(ExitCode::usage,
+              fmt::format("{}:{}: fluid: {:.3g} particles need about {:.3g} GB and {:.3g} GB are free; "
+                          "ask for fewer particles or a larger spacing",
+                          scene.file, scene.fluid.place.line, particles, wanted / 1e9, there / 1e9));
 }
 
 }  // namespace
@@ -147,8 +149,7 @@ Start fill_bodies(const Scene& scene, const Features& features) {
   return start;
 }
 
-template <int Dim>
-std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing) {
+template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing) {
   std::vector<Wall<Dim>> walls;
   for (const Boundary& boundary : scene.boundaries) {
     Wall<Dim> wall;

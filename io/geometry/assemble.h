@@ -16,8 +16,7 @@ namespace molten {
 TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, bool must_close);
 
 /// The walls of a scene for the solver.
-template <int Dim>
-std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing);
+template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing);
 
 /// The walls as one surface for pictures (2-D outlines: thin strips); planes become squares about the fluid.
 TriangleMesh picture_of_walls(const Scene& scene, const Start& start);
@@ -26,10 +25,9 @@ TriangleMesh picture_of_walls(const Scene& scene, const Start& start);
 /// meshes.
 Start fill_bodies(const Scene& scene, const Features& features);
 
-/// Throws Error(geometry), with the number of particles and the place of the first, if particles start inside a wall or on
-/// top of each other.
-template <int Dim>
-void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact);
+/// Throws Error(geometry), with the number of particles and the place of the first, if particles start inside a wall or
+/// on top of each other.
+template <int Dim> void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact);
 
 /// Hash of everything that may not change between a stop and its resume: start, walls, numerics.
 std::string fingerprint(const Scene& scene, const Start& start);

@@ -10,21 +10,18 @@ namespace {
 /// FNV-1a over numbers' bytes.
 class Hash {
  public:
-  template <class T>
-  void add(const T* data, std::size_t count) {
+  template <class T> void add(const T* data, std::size_t count) {
     const auto* bytes = reinterpret_cast<const unsigned char*>(data);
     for (std::size_t k = 0; k < count * sizeof(T); ++k) value_ = (value_ ^ bytes[k]) * 1099511628211ull;
   }
-  template <class T>
-  void add(const T& number) { add(&number, 1); }
+  template <class T> void add(const T& number) { add(&number, 1); }
   std::string text() const { return fmt::format("{:016x}", value_); }
 
  private:
   std::uint64_t value_ = 14695981039346656037ull;
 };
 
-template <int Dim>
-void add_walls(Hash& hash, const Scene& scene, double spacing) {
+template <int Dim> void add_walls(Hash& hash, const Scene& scene, double spacing) {
   for (const Wall<Dim>& wall : build_walls<Dim>(scene, spacing)) {
     for (const auto& v : wall.vertices) hash.add(v.data(), Dim);
     for (const auto& f : wall.facets) hash.add(f.data(), Dim);

@@ -17,7 +17,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file);
 /// One line a defect, each with where it is; empty: a closed, consistently outward-oriented surface.
 struct MeshReport {
   std::size_t open_edges = 0, flipped_edges = 0, degenerate_triangles = 0;
-  double volume = 0;  // m³, signed: negative is inverted
+  double volume = 0;                 // m³, signed: negative is inverted
   Vec3 first_defect = Vec3::Zero();  // m; midpoint of the first open or flipped edge
 };
 MeshReport inspect(const TriangleMesh& mesh);

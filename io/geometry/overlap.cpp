@@ -11,8 +11,8 @@
 #include "core/inside.h"
 #include "io/geometry/assemble.h"
 #include "io/geometry/mesh_file.h"
-#include "io/scene/scene_file.h"
 #include "io/geometry/terrain.h"
+#include "io/scene/scene_file.h"
 
 namespace molten {
 
@@ -56,7 +56,8 @@ Test test_of_closed(const Scene& scene, const Boundary& boundary, double spacing
   return [inside, container = boundary.inside, d = scene.dimensions - 1](const Place3& x) {
     std::vector<Span> spans;
     inside->spans(x[0], x[1], spans);
-    const bool within = std::any_of(spans.begin(), spans.end(), [&](const Span& s) { return x[d] > s.low && x[d] < s.high; });
+    const bool within =
+        std::any_of(spans.begin(), spans.end(), [&](const Span& s) { return x[d] > s.low && x[d] < s.high; });
     return within != container;
   };
 }
@@ -64,9 +65,12 @@ Test test_of_closed(const Scene& scene, const Boundary& boundary, double spacing
 std::vector<Test> tests_of(const Scene& scene, double spacing) {
   std::vector<Test> tests;
   for (const Boundary& boundary : scene.boundaries) {
-    if (boundary.shape.plane) tests.push_back(test_of_plane(*boundary.shape.plane, scene.dimensions));
-    else if (boundary.shape.terrain) tests.push_back(test_of_terrain(scene, *boundary.shape.terrain));
-    else tests.push_back(test_of_closed(scene, boundary, spacing));
+    if (boundary.shape.plane)
+      tests.push_back(test_of_plane(*boundary.shape.plane, scene.dimensions));
+    else if (boundary.shape.terrain)
+      tests.push_back(test_of_terrain(scene, *boundary.shape.terrain));
+    else
+      tests.push_back(test_of_closed(scene, boundary, spacing));
   }
   return tests;
 }
@@ -80,16 +84,16 @@ void require_in_domain(const Scene& scene, const Start& start) {
   for (const Place3& x : start.position)
     for (int d = 0; d < scene.dimensions; ++d)
       if (x[d] < scene.domain->min[d] || x[d] > scene.domain->max[d])
-        throw Error(ExitCode::geometry,
-                    fmt::format("{}: scene.domain: fluid starts outside of it, at ({:.6g}, {:.6g}, {:.6g}) m; enlarge the "
-                                "domain or move the fluid",
-                                scene.file, x[0], x[1], x[2]));
+        throw Error(
+            ExitCode::geometry,
+            fmt::format("{}: scene.domain: fluid starts outside of it, at ({:.6g}, {:.6g}, {:.6g}) m; enlarge the "
+                        "domain or move the fluid",
+                        scene.file, x[0], x[1], x[2]));
 }
 
 }  // namespace
 
-template <int Dim>
-void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
+template <int Dim> void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
   require_in_domain(scene, start);
   if (contact.empty()) return;
   const double nearest = 0.01 * start.spacing;  // to a wall, m; contact moves those in front of it out to their radius
@@ -104,10 +108,11 @@ void require_no_overlap(const Scene& scene, const Start& start, const Contact<Di
     if (wrong && inside++ == 0) first = x;
   }
   if (inside > 0)
-    throw Error(ExitCode::geometry,
-                fmt::format("{}: {} of {} particles start inside a wall, the first at ({:.6g}, {:.6g}, {:.6g}) m; "
-                            "move the fluid at least half a spacing ({:.3g} m) away from the walls",
-                            scene.file, inside, start.position.size(), first[0], first[1], first[2], start.spacing / 2));
+    throw Error(
+        ExitCode::geometry,
+        fmt::format("{}: {} of {} particles start inside a wall, the first at ({:.6g}, {:.6g}, {:.6g}) m; "
+                    "move the fluid at least half a spacing ({:.3g} m) away from the walls",
+                    scene.file, inside, start.position.size(), first[0], first[1], first[2], start.spacing / 2));
 }
 
 template void require_no_overlap(const Scene&, const Start&, const Contact<2>&);

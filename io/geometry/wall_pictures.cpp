@@ -8,7 +8,8 @@ namespace molten {
 
 namespace {
 
-void append(TriangleMesh& all, const std::vector<Vec3>& vertices, const std::vector<std::array<std::int32_t, 3>>& triangles) {
+void append(TriangleMesh& all, const std::vector<Vec3>& vertices,
+            const std::vector<std::array<std::int32_t, 3>>& triangles) {
   const auto first = static_cast<std::int32_t>(all.vertices.size());
   all.vertices.insert(all.vertices.end(), vertices.begin(), vertices.end());
   for (const auto& t : triangles) all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
@@ -28,7 +29,8 @@ void append_outline(TriangleMesh& all, const Wall<2>& wall, double thickness) {
   for (const auto& f : wall.facets) {
     const Vec2 a = wall.vertices[f[0]], b = wall.vertices[f[1]];
     const Vec2 out = thickness * Vec2(b[1] - a[1], a[0] - b[0]).normalized();  // away from the fluid
-    append(all, {{a[0], a[1], 0}, {b[0], b[1], 0}, {b[0] + out[0], b[1] + out[1], 0}, {a[0] + out[0], a[1] + out[1], 0}},
+    append(all,
+           {{a[0], a[1], 0}, {b[0], b[1], 0}, {b[0] + out[0], b[1] + out[1], 0}, {a[0] + out[0], a[1] + out[1], 0}},
            {{0, 1, 2}, {0, 2, 3}});
   }
 }

@@ -14,10 +14,10 @@ namespace molten {
 /// What identifies the run that a checkpoint belongs to; stored in it and checked on resume.
 struct CheckpointHead {
   std::int64_t step = 0;
-  double time = 0;             // s
-  std::string scene_text;      // as run
-  std::string scene_hash;      // of everything that may not change between stop and resume
-  std::string version;         // of molten
+  double time = 0;         // s
+  std::string scene_text;  // as run
+  std::string scene_hash;  // of everything that may not change between stop and resume
+  std::string version;     // of molten
 };
 
 /// Saves what `save` archives to checkpoints/step-<step>.h5 and keeps the newest `keep` files.

@@ -1,4 +1,5 @@
-// Pictures of a run: particles as spheres and boundary meshes, ray traced with Embree, coloured by a field with a legend.
+// Pictures of a run: particles as spheres and boundary meshes, ray traced with Embree, coloured by a field with a
+// legend.
 #pragma once
 
 #include <array>
@@ -13,11 +14,11 @@
 namespace molten {
 
 struct PictureOptions {
-  int width = 960, height = 720;                   // pixels
-  std::string field;                               // name or "name magnitude"; empty: temperature, else speed
-  std::optional<std::array<double, 2>> range;      // of the colours; default: the field's range over all frames drawn
+  int width = 960, height = 720;               // pixels
+  std::string field;                           // name or "name magnitude"; empty: temperature, else speed
+  std::optional<std::array<double, 2>> range;  // of the colours; default: the field's range over all frames drawn
   std::optional<std::array<double, 3>> eye, look_at;  // m; default: fits everything in view
-  double azimuth = -60, elevation = 20;            // degrees, when no eye is given
+  double azimuth = -60, elevation = 20;               // degrees, when no eye is given
   double zoom = 1;
   bool boundaries = true;
 };

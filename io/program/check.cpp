@@ -6,8 +6,8 @@
 #include "core/diagnostics.h"
 #include "core/step.h"
 #include "io/geometry/assemble.h"
-#include "io/program/commands.h"
 #include "io/geometry/mesh_file.h"
+#include "io/program/commands.h"
 #include "io/program/progress.h"
 #include "io/scene/scene_file.h"
 
@@ -19,12 +19,13 @@ void print_mesh(const Scene& scene, const Shape& shape) {
   if (!shape.mesh) return;
   const TriangleMesh mesh = read_mesh(locate(scene, shape.mesh->path));
   const MeshReport r = inspect(mesh);
-  fmt::print("mesh              {}: {} vertices, {} triangles, {} open edges, {} flipped edges, {} degenerate triangles\n",
-             shape.mesh->path, mesh.vertices.size(), mesh.triangles.size(), r.open_edges, r.flipped_edges,
-             r.degenerate_triangles);
+  fmt::print(
+      "mesh              {}: {} vertices, {} triangles, {} open edges, {} flipped edges, {} degenerate triangles\n",
+      shape.mesh->path, mesh.vertices.size(), mesh.triangles.size(), r.open_edges, r.flipped_edges,
+      r.degenerate_triangles);
   if (r.open_edges + r.flipped_edges > 0)
-    fmt::print("                  first defect near ({:.6g}, {:.6g}, {:.6g}) in the file's coordinates\n", r.first_defect[0],
-               r.first_defect[1], r.first_defect[2]);
+    fmt::print("                  first defect near ({:.6g}, {:.6g}, {:.6g}) in the file's coordinates\n",
+               r.first_defect[0], r.first_defect[1], r.first_defect[2]);
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -33,8 +34,7 @@ std::string joined(const std::vector<std::string>& words) {
   return all;
 }
 
-template <int Dim, class Real>
-void print_run(const Scene& scene, const Features& features, const Start& start) {
+template <int Dim, class Real> void print_run(const Scene& scene, const Features& features, const Start& start) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
   Contact<Dim> contact(build_walls<Dim>(scene, start.spacing), start.spacing / 2, p.support_radius);
   require_no_overlap(scene, start, contact);
@@ -46,17 +46,21 @@ void print_run(const Scene& scene, const Features& features, const Start& start)
   for (int k = 0; k < trial_steps; ++k) step(s);
   const double a_step = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() / trial_steps;
   const double steps = scene.run.end_time / s.clock.dt;
-  const double frame = static_cast<double>(start.position.size()) * 4 * (8 + static_cast<double>(available_fields(features).size()) + 2);
-  fmt::print("particles         {} (mass {:.4g} kg each, spacing {:.4g} m)\n", start.position.size(), p.particle_mass, p.spacing);
+  const double frame =
+      static_cast<double>(start.position.size()) * 4 * (8 + static_cast<double>(available_fields(features).size()) + 2);
+  fmt::print("particles         {} (mass {:.4g} kg each, spacing {:.4g} m)\n", start.position.size(), p.particle_mass,
+             p.spacing);
   fmt::print("smoothing length  {:.4g} m, support radius {:.4g} m, {:.1f} neighbours on average\n", p.smoothing_length,
              p.support_radius, static_cast<double>(count_pairs(s)) / static_cast<double>(s.particles.count()));
   fmt::print("sound speed       {:.4g} m/s\n", p.eos.sound_speed);
   fmt::print("time step         {:.3g} s at the start, set by the {} limit\n", s.clock.dt, name_of(s.clock.limit));
   fmt::print("steps             about {:.3g}\n", steps);
-  fmt::print("run time          about {} on {} threads, if the time step stays\n", in_words(steps * a_step), omp_get_max_threads());
+  fmt::print("run time          about {} on {} threads, if the time step stays\n", in_words(steps * a_step),
+             omp_get_max_threads());
   fmt::print("memory            {:.3g} MB of state ({:.0f} bytes a particle)\n", static_cast<double>(s.bytes()) / 1e6,
              static_cast<double>(s.bytes()) / static_cast<double>(s.particles.count()));
-  fmt::print("frames            {:.0f}, about {:.3g} MB in all\n", scene.run.end_time * scene.output.frames_per_second + 1,
+  fmt::print("frames            {:.0f}, about {:.3g} MB in all\n",
+             scene.run.end_time * scene.output.frames_per_second + 1,
              (scene.run.end_time * scene.output.frames_per_second + 1) * frame / 1e6);
 }
 
@@ -72,8 +76,10 @@ ExitCode check_scene(const Scene& scene) {
   fmt::print("features          {}\n", joined(features.names()));
   fmt::print("passes a step     {}\n", joined(features.passes()));
   const bool single = scene.numerics.precision == Precision::single;
-  if (scene.dimensions == 2) single ? print_run<2, float>(scene, features, start) : print_run<2, double>(scene, features, start);
-  else single ? print_run<3, float>(scene, features, start) : print_run<3, double>(scene, features, start);
+  if (scene.dimensions == 2)
+    single ? print_run<2, float>(scene, features, start) : print_run<2, double>(scene, features, start);
+  else
+    single ? print_run<3, float>(scene, features, start) : print_run<3, double>(scene, features, start);
   fmt::print("no errors found\n");
   return ExitCode::done;
 }

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <fstream>
 
-#include "io/hdf5/checkpoint.h"
-#include "io/program/commands.h"
-#include "io/hdf5/frames.h"
 #include "io/geometry/mesh_file.h"
+#include "io/hdf5/checkpoint.h"
+#include "io/hdf5/frames.h"
+#include "io/program/commands.h"
 
 namespace molten {
 
@@ -30,8 +30,8 @@ void print_range(const std::string& name, const std::string& unit, int component
 
 void print_frame(const fs::path& file) {
   const Snapshot shot = read_frame(file);
-  fmt::print("{}: frame, t = {:.6g} s, step {}, {} particles, {}-D, spacing {:.4g} m\n", file.string(), shot.time, shot.step,
-             shot.count(), shot.dimensions, shot.spacing);
+  fmt::print("{}: frame, t = {:.6g} s, step {}, {} particles, {}-D, spacing {:.4g} m\n", file.string(), shot.time,
+             shot.step, shot.count(), shot.dimensions, shot.spacing);
   for (const SnapshotField& f : shot.fields) print_range(f.name, f.unit, f.components, f.values);
 }
 
@@ -47,7 +47,8 @@ void print_run_folder(const fs::path& folder) {
   }
   for (const fs::path& file : list_checkpoints(folder)) print_checkpoint(file);
   const bool holds_run = fs::exists(folder / "manifest.json");  // which may well write no frames
-  if (holds_run && (!fs::exists(folder / "frames") || fs::is_empty(folder / "frames"))) return fmt::print("no frames\n");
+  if (holds_run && (!fs::exists(folder / "frames") || fs::is_empty(folder / "frames")))
+    return fmt::print("no frames\n");
   const auto frames = list_frames(folder);
   fmt::print("{} frames\n", frames.size());
   print_frame(frames.back().file);
@@ -70,11 +71,13 @@ ExitCode show_info(const fs::path& file) {
   } else if (has_extension(file, {".obj", ".stl", ".ply"})) {
     const TriangleMesh mesh = read_mesh(file);
     const MeshReport r = inspect(mesh);
-    fmt::print("{}: mesh, {} vertices, {} triangles, volume {:.6g} m3, {} open edges, {} flipped edges, {} degenerate\n",
-               file.string(), mesh.vertices.size(), mesh.triangles.size(), r.volume, r.open_edges, r.flipped_edges,
-               r.degenerate_triangles);
+    fmt::print(
+        "{}: mesh, {} vertices, {} triangles, volume {:.6g} m3, {} open edges, {} flipped edges, {} degenerate\n",
+        file.string(), mesh.vertices.size(), mesh.triangles.size(), r.volume, r.open_edges, r.flipped_edges,
+        r.degenerate_triangles);
   } else {
-    throw Error(ExitCode::usage, file.string() + ": not a run folder, frame (.hdf), checkpoint (.h5) or mesh (.obj, .stl, .ply)");
+    throw Error(ExitCode::usage,
+                file.string() + ": not a run folder, frame (.hdf), checkpoint (.h5) or mesh (.obj, .stl, .ply)");
   }
   return ExitCode::done;
 }

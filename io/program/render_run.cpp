@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/geometry/mesh_file.h"
+#include "io/hdf5/frames.h"
 #include "io/picture/camera.h"
 #include "io/picture/colour_field.h"
 #include "io/program/commands.h"
-#include "io/hdf5/frames.h"
-#include "io/geometry/mesh_file.h"
 
 namespace molten {
 
@@ -35,8 +35,10 @@ int number(const std::string& text, const std::string& whole) {
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> parts{""};
   for (const char c : text) {
-    if (c == at) parts.emplace_back();
-    else parts.back().push_back(c);
+    if (c == at)
+      parts.emplace_back();
+    else
+      parts.back().push_back(c);
   }
   return parts;
 }
@@ -55,7 +57,8 @@ std::vector<int> chosen_frames(const std::string& text, int count) {
     for (const std::string& part : split(text, ',')) chosen.push_back(number(part, text));
   }
   for (const int k : chosen)
-    if (k >= count) throw Error(ExitCode::usage, fmt::format("--frames {}: the run has frames 0 to {}", text, count - 1));
+    if (k >= count)
+      throw Error(ExitCode::usage, fmt::format("--frames {}: the run has frames 0 to {}", text, count - 1));
   if (chosen.empty()) bad_choice(text);
   return chosen;
 }
@@ -84,7 +87,8 @@ ExitCode render_run(const RenderChoice& choice) {
   const fs::path folder = choice.output.empty() ? choice.run / "pictures" : choice.output;
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw Error(ExitCode::files, folder.string() + ": cannot create the folder for the pictures: " + error.message());
+  if (error)
+    throw Error(ExitCode::files, folder.string() + ": cannot create the folder for the pictures: " + error.message());
 
   std::vector<Snapshot> shots;
   for (const int k : chosen) shots.push_back(read_frame(frames[k].file));

@@ -19,7 +19,8 @@ void write_json(const std::filesystem::path& file, const nlohmann::ordered_json&
   {
     std::ofstream out(part);
     out << json.dump(2) << '\n';
-    if (!out.flush()) throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
+    if (!out.flush())
+      throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
   }
   std::filesystem::rename(part, file);
 }

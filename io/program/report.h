@@ -16,7 +16,7 @@ struct Summary {
   std::string status;  // "done", "interrupted", "diverged"
   std::int64_t particles = 0, particles_lost = 0, steps = 0;
   double simulated_time_s = 0;
-  double wall_time_s = 0;              // of the stepping loop, output not counted
+  double wall_time_s = 0;  // of the stepping loop, output not counted
   double particle_steps = 0, pairs = 0;
   int threads = 0;
   std::size_t state_bytes = 0;

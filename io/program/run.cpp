@@ -11,14 +11,14 @@
 #include "core/diagnostics.h"
 #include "core/step.h"
 #include "io/geometry/assemble.h"
+#include "io/geometry/obj_file.h"
 #include "io/hdf5/checkpoint.h"
 #include "io/hdf5/frames.h"
-#include "io/geometry/obj_file.h"
 #include "io/program/progress.h"
 #include "io/program/report.h"
-#include "io/scene/scene_file.h"
 #include "io/program/series.h"
 #include "io/program/signals.h"
+#include "io/scene/scene_file.h"
 #include "version.h"
 
 namespace molten {
@@ -46,8 +46,7 @@ struct Ledger {
 };
 
 /// One run in its folder: steps, and writes what is due between them.
-template <int Dim, class Real>
-class Runner {
+template <int Dim, class Real> class Runner {
  public:
   Runner(const Scene& scene, const std::filesystem::path& folder, State<Dim, Real> state, std::string fingerprint)
       : scene_(scene), folder_(folder), state_(std::move(state)), fingerprint_(std::move(fingerprint)) {}
@@ -123,7 +122,8 @@ class Runner {
     ledger_.stepping_seconds += seconds_since(start);
     ledger_.particle_steps += static_cast<double>(state_.particles.count());
     write_due();
-    if (scene_.output.checkpoint_every > 0 && seconds_since(last_checkpoint_) > scene_.output.checkpoint_every) checkpoint();
+    if (scene_.output.checkpoint_every > 0 && seconds_since(last_checkpoint_) > scene_.output.checkpoint_every)
+      checkpoint();
     if (progress_->is_due()) show_progress();
   }
 
@@ -150,7 +150,8 @@ class Runner {
   void checkpoint() {
     const auto scope = state_.timer.scope("checkpoint");
     const CheckpointHead head{state_.clock.step, state_.clock.time, scene_.text, fingerprint_, MOLTEN_VERSION};
-    write_checkpoint(folder_, head, [this](Archive& a) { archive(a); }, scene_.output.checkpoints_kept);
+    write_checkpoint(
+        folder_, head, [this](Archive& a) { archive(a); }, scene_.output.checkpoints_kept);
     last_checkpoint_ = std::chrono::steady_clock::now();
   }
 
@@ -170,7 +171,8 @@ class Runner {
     checkpoint();
     // The last state is worth a row and a frame even between their times; a resume drops them again.
     if (code == ExitCode::done && state_.clock.step > last_row_step_) write_row(diagnose(state_));
-    if (code == ExitCode::done && scene_.output.frames_per_second > 0 && state_.clock.time > last_frame_) write_snapshot();
+    if (code == ExitCode::done && scene_.output.frames_per_second > 0 && state_.clock.time > last_frame_)
+      write_snapshot();
     if (state_.neighbours.dropped() > 0)
       fmt::print(stderr, "note: {} particles have left the domain\n", state_.neighbours.dropped());
     summarise(code == ExitCode::done ? "done" : "interrupted");
@@ -230,8 +232,7 @@ Runner<Dim, Real> prepare_run(const Scene& scene, const std::filesystem::path& f
 }
 
 /// Calls f.template operator()<Dim, Real>() for the scene's dimensions and precision.
-template <class F>
-ExitCode dispatch(const Scene& scene, F&& f) {
+template <class F> ExitCode dispatch(const Scene& scene, F&& f) {
   const bool single = scene.numerics.precision == Precision::single;
   if (scene.dimensions == 2) return single ? f.template operator()<2, float>() : f.template operator()<2, double>();
   return single ? f.template operator()<3, float>() : f.template operator()<3, double>();
@@ -242,11 +243,12 @@ void make_folder(const std::filesystem::path& folder, bool overwrite) {
   std::error_code error;
   const bool holds_run = fs::exists(folder / "manifest.json", error) || fs::exists(folder / "checkpoints", error);
   if (holds_run && !overwrite)
-    throw Error(ExitCode::files, folder.string() + ": already holds a run; go on with `molten resume " + folder.string() +
+    throw Error(ExitCode::files, folder.string() + ": already holds a run; go on with `molten resume " +
+                                     folder.string() +
                                      "`, choose another folder with -o, or replace it with --overwrite");
   if (holds_run)
-    for (const char* name : {"frames", "checkpoints", "frames.hdf.series", "series.csv", "summary.json", "manifest.json",
-                             "scene.toml", "walls.obj", "pictures"})
+    for (const char* name : {"frames", "checkpoints", "frames.hdf.series", "series.csv", "summary.json",
+                             "manifest.json", "scene.toml", "walls.obj", "pictures"})
       fs::remove_all(folder / name, error);
   fs::create_directories(folder, error);
   if (error) throw Error(ExitCode::files, folder.string() + ": cannot create the output folder: " + error.message());
@@ -323,8 +325,9 @@ ExitCode resume_run(const ResumeOptions& options) {
   const std::string print = fingerprint(scene, start);
   if (print != checkpoint.head.scene_hash && !options.force)
     throw Error(ExitCode::checkpoint,
-                options.folder.string() + ": the scene, a mesh or the numerics changed since the checkpoint; only [run] and "
-                                          "[output] may change; undo it or go on all the same with --force");
+                options.folder.string() +
+                    ": the scene, a mesh or the numerics changed since the checkpoint; only [run] and "
+                    "[output] may change; undo it or go on all the same with --force");
   return dispatch(scene, [&]<int Dim, class Real>() {
     auto runner = prepare_run<Dim, Real>(scene, options.folder, features, start);
     runner.restore(checkpoint.file);

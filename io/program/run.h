@@ -23,7 +23,7 @@ struct ResumeOptions {
   std::filesystem::path folder;
   std::vector<std::string> overrides;  // of the scene as run; only run.* and output.* without force
   int threads = 0;
-  bool force = false;                  // go on although the scene changed
+  bool force = false;  // go on although the scene changed
 };
 
 /// Goes on from the newest usable checkpoint.

@@ -32,18 +32,20 @@ Series::Series(const std::filesystem::path& file, std::int64_t keep) : file_(fil
     std::ofstream fresh(part, std::ios::trunc);
     fresh << header;
     for (const std::string& row : kept) fresh << row << '\n';
-    if (!fresh.flush()) throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
+    if (!fresh.flush())
+      throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
   }
   std::filesystem::rename(part, file);
   out_.open(file, std::ios::app);
 }
 
 void Series::add(const Clock& c, const Diagnostics& d) {
-  out_ << fmt::format("{:.9g},{},{:.6g},{},{},{:.9g},{:.9g},{:.12g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},"
-                      "{:.6g},{:.6g},{:.6g}\n",
-                      c.time, c.step, c.dt, name_of(c.limit), d.particles, d.kinetic_energy, d.potential_energy, d.heat,
-                      d.momentum[0], d.momentum[1], d.momentum[2], d.lower[0], d.lower[1], d.lower[2], d.upper[0], d.upper[1],
-                      d.upper[2], d.max_speed, d.max_compression);
+  out_ << fmt::format(
+      "{:.9g},{},{:.6g},{},{},{:.9g},{:.9g},{:.12g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},"
+      "{:.6g},{:.6g},{:.6g}\n",
+      c.time, c.step, c.dt, name_of(c.limit), d.particles, d.kinetic_energy, d.potential_energy, d.heat, d.momentum[0],
+      d.momentum[1], d.momentum[2], d.lower[0], d.lower[1], d.lower[2], d.upper[0], d.upper[1], d.upper[2], d.max_speed,
+      d.max_compression);
   if (!out_.flush()) throw Error(ExitCode::files, file_.string() + ": cannot write; check the disk");
 }
 

@@ -227,8 +227,8 @@ TYPED_TEST(OperatorsOf, LaminarViscosityOfQuadraticFlow) {
 }
 
 TYPED_TEST(OperatorsOf, StressFormOfQuadraticFlow) {
-  // The same with constant viscosity as ∇·S: two gradients, so the gradient's factor squared. The damping works on what the
-  // strain rates miss of the pairs' approach, 1 − factor of it, and so makes up for most of what the stress lacks.
+  // The same with constant viscosity as ∇·S: two gradients, so the gradient's factor squared. The damping works on what
+  // the strain rates miss of the pairs' approach, 1 − factor of it, and so makes up for most of what the stress lacks.
   MOLTEN_FLAVOUR;
   const Block<Dim> block = smd_block<Dim>();
   auto s = block.template state<Real>();

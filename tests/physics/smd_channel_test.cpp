@@ -37,7 +37,7 @@ Scene channel_scene(const Channel& c, double length) {
   }
   scene.numerics.smoothing_ratio = c.smoothing_ratio;
   scene.numerics.sound_speed = 20;
-  
+
   make_periodic(scene, {length, 4 * half_gap, 0});
   return scene;
 }
@@ -193,8 +193,8 @@ TEST(Channel, NewtonianAtTwoSpacings) {
   expect_within(run_channel<double>({.rows = 20, .viscosity = 1, .smoothing_ratio = 2}, 3), 0.006, 0.006);
 }
 
-// From the exact profile and for a short while: the kink of the profile where the halves meet sets velocities going that
-// alternate from row to row.
+// From the exact profile and for a short while: the kink of the profile where the halves meet sets velocities going
+// that alternate from row to row.
 TEST(Channel, ViscoplasticKeepsItsProfileForAWhile) {
   for (const double jump : {15.0, 150.0}) {
     const Outcome o = run_channel<double>({.jump_number = jump}, 0.05, false);
@@ -223,9 +223,7 @@ TEST(SlowChannel, Viscoplastic15Finer) {
   expect_within(run_channel<double>({.rows = 20, .jump_number = 15}, 4), 0.045, 0.04);
 }
 
-TEST(SlowChannel, Viscoplastic150FromRest) {
-  expect_within(run_channel<double>({.jump_number = 150}, 3), 0.1, 0.06);
-}
+TEST(SlowChannel, Viscoplastic150FromRest) { expect_within(run_channel<double>({.jump_number = 150}, 3), 0.1, 0.06); }
 
 }  // namespace
 }  // namespace molten
