@@ -36,7 +36,8 @@ template <int Dim> struct Grid {
 
   std::int32_t index(int d, double x) const {
     const double k = std::floor((x - lower[d]) / width[d]);
-    return static_cast<std::int32_t>(k < 0 ? 0 : k >= cells[d] ? cells[d] - 1 : k);
+    if (!(k > 0)) return 0;  // not a number, too
+    return k >= cells[d] ? cells[d] - 1 : static_cast<std::int32_t>(k);
   }
   std::size_t columns() const {
     std::size_t n = 1;
