@@ -23,6 +23,7 @@ inline constexpr int native_lanes =
 
 /// The compilers' vector types by name: g++ 12 does not take a vector size that depends on a template's parameters.
 template <class Real, int N> struct NativeVector;
+template <class Real> struct NativeVector<Real, 1> { typedef Real type; };
 template <> struct NativeVector<float, 8> { typedef float type __attribute__((vector_size(32))); };
 template <> struct NativeVector<float, 16> { typedef float type __attribute__((vector_size(64))); };
 template <> struct NativeVector<double, 4> { typedef double type __attribute__((vector_size(32))); };
@@ -34,32 +35,7 @@ template <class Real, int N> struct Lanes {
 
   Lanes() = default;
   Lanes(Native native) : v(native) {}
-  Lanes(Real s) : v(s - Native{}) {}
-
-  friend Lanes operator+(Lanes a, Lanes b) { return a.v + b.v; }
-  friend Lanes operator-(Lanes a, Lanes b) { return a.v - b.v; }
-  friend Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
-  friend Lanes operator/(Lanes a, Lanes b) { return a.v / b.v; }
-  friend Lanes operator-(Lanes a) { return -a.v; }
-  Lanes& operator+=(Lanes b) {
-    v += b.v;
-    return *this;
-  }
-  Lanes& operator-=(Lanes b) {
-    v -= b.v;
-    return *this;
-  }
-  Lanes& operator*=(Lanes b) {
-    v *= b.v;
-    return *this;
-  }
-};
-
-template <class Real> struct Lanes<Real, 1> {
-  Real v;
-
-  Lanes() = default;
-  Lanes(Real s) : v(s) {}
+  Lanes(Real s) requires(N > 1) : v(s - Native{}) {}
 
   friend Lanes operator+(Lanes a, Lanes b) { return a.v + b.v; }
   friend Lanes operator-(Lanes a, Lanes b) { return a.v - b.v; }

@@ -89,7 +89,9 @@ void add_render(CLI::App& app, Commands& c) {
 
 void add_compare(CLI::App& app, Commands& c) {
   CLI::App* compare =
-      app.add_subcommand("compare", "Differences between the last common frames of two runs, or two frames");
+      app.add_subcommand("compare",
+                         "Differences between the last common frames of two runs, or between two frames\n"
+                         "  molten compare runs/bunny runs/bunny-double");
   compare->add_option("a", c.scene, "Run folder or frame")->required();
   compare->add_option("b", c.other, "Run folder or frame")->required();
   compare->callback([&] { c.chosen = [&] { return molten::compare(c.scene, c.other); }; });

@@ -98,8 +98,7 @@ template <int Dim, class Real> void expect_good(const Cloud<Dim, Real>& c) {
 }
 
 template <class F> class NeighboursOf : public testing::Test {};
-using Flavours = testing::Types<Flavour<2, float>, Flavour<2, double>, Flavour<3, float>, Flavour<3, double>>;
-TYPED_TEST_SUITE(NeighboursOf, Flavours);
+TYPED_TEST_SUITE(NeighboursOf, Flavours, FlavourNames);
 
 #define MOLTEN_FLAVOUR                   \
   constexpr int Dim = TypeParam::dim;    \

@@ -170,8 +170,7 @@ template <int Dim, class Real> double worst_error(const State<Dim, Real>& s, con
 }
 
 template <class F> class PairPassOf : public testing::Test {};
-using Flavours = testing::Types<Flavour<2, float>, Flavour<2, double>, Flavour<3, float>, Flavour<3, double>>;
-TYPED_TEST_SUITE(PairPassOf, Flavours);
+TYPED_TEST_SUITE(PairPassOf, Flavours, FlavourNames);
 
 /// Round-off of sums of some 100 terms, and positions good to 1e-6 spacings (in double 1e-12) in kernels whose slope
 /// changes by tens of percent over a spacing. Spiky and quadratic have a slope at r = 0, where 1/r magnifies more: they

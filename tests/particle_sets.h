@@ -10,6 +10,7 @@
 #include "core/parameters.h"
 #include "core/state.h"
 #include "core/step.h"
+#include "tests/flavours.h"
 
 namespace molten::particle_sets {
 
@@ -122,11 +123,5 @@ template <int Dim> bool well_inside(const std::array<double, 3>& x, double size,
     if (x[d] < margin || x[d] > size - margin) return false;
   return true;
 }
-
-/// A type for typed tests: dimensions and precision.
-template <int Dim_, class Real_> struct Flavour {
-  static constexpr int dim = Dim_;
-  using Real = Real_;
-};
 
 }  // namespace molten::particle_sets

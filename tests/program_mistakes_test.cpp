@@ -58,10 +58,10 @@ TEST_F(BadScene, FieldsThatItHasNot) {
 }
 
 TEST_F(BadScene, MoreParticlesThanMemory) {
-  expect_bad(replaced(block_scene, "spacing = 0.02", "spacing = 1e-9"), 2, {"particles", "GB"});
+  expect_bad(replaced(block_scene, "spacing = 0.02", "spacing = 1.1e-6"), 2, {"particles", "GB"});
   expect_bad(replaced(block_scene, "spacing = 0.02", "particles = 2000000000"), 2, {"particles", "GB"});
   const std::string ball =
-      "[fluid]\nsphere = { center = [0, 0, 1], radius = 0.9 }\nspacing = 1e-7\n[run]\nend_time = 1\n";
+      "[fluid]\nsphere = { center = [0, 0, 1], radius = 0.9 }\nspacing = 1e-6\n[run]\nend_time = 1\n";
   expect_bad(ball, 2, {"particles", "GB"});
 }
 

@@ -90,7 +90,7 @@ const std::vector<Mistake> mistakes = {
     {"model = \"smd\"\n", "", "s.toml:21:5: fluid.rheology.n: belongs to model \"smd\""},
     {"n = 0.5", "viscosity = 0.5", "viscosity: belongs to model \"newtonian\""},
     {"yield_stress = 60.0", "dimensionless = true", "consistency: is 1 when dimensionless"},
-    {"jump_number = [15, 150]", "jump_number = [150, 15]", "falls from hot to cold"},
+    {"jump_number = [15, 150]", "jump_number = [150, 15]", "does not rise from hot to cold"},
     {"melting_range = [40, 60]\n", "", "nothing melts; add melting_range"},
     {"kernel = \"gaussian\"", "gamma = 7", "numerics.gamma: has no effect with state_equation"},
     {"xsph = { epsilon = 0.4 }", "xsph = true", "true says too little"},

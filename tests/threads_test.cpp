@@ -82,8 +82,7 @@ template <int Dim, class Real> std::vector<unsigned char> bits_after(const Scene
 }
 
 template <class F> class ThreadsOf : public testing::Test {};
-using Flavours = testing::Types<Flavour<2, float>, Flavour<2, double>, Flavour<3, float>, Flavour<3, double>>;
-TYPED_TEST_SUITE(ThreadsOf, Flavours);
+TYPED_TEST_SUITE(ThreadsOf, Flavours, FlavourNames);
 
 template <int Dim, class Real> void expect_same_bits(const Scene& scene, int steps) {
   const auto one = bits_after<Dim, Real>(scene, 1, steps);

@@ -104,11 +104,27 @@ void require_memory(const Scene& scene, double particles) {
                           scene.file, scene.fluid.place.line, particles, wanted / 1e9, there / 1e9));
 }
 
+/// Powers of the smoothing length up to the fifth must fit into single precision.
+void require_runnable_size(const Scene& scene, double spacing) {
+  if (spacing >= 1e-6 && spacing <= 1e6) return;
+  throw Error(ExitCode::usage,
+              fmt::format("{}:{}: fluid: the particles come out {:.3g} m apart, and spacings from 1e-6 to 1e6 m can be "
+                          "run; give the body's size in metres",
+                          scene.file, scene.fluid.place.line, spacing));
+}
+
+Filling filled(const Scene& scene, const std::vector<Region>& regions) {
+  try {
+    return fill(regions, scene.dimensions, scene.fluid.particles, scene.fluid.spacing);
+  } catch (const Error& e) {
+    throw Error(e.code(), fmt::format("{}:{}: fluid: {}", scene.file, scene.fluid.place.line, e.what()));
+  }
+}
+
 }  // namespace
 
 Start fill_bodies(const Scene& scene, const Features& features) {
   const Fluid& fluid = scene.fluid;
-  const double coarse = fluid.spacing.value_or(0);
   std::vector<Region> regions;
   double measure = 0;
   // Curved shapes are cut into facets a few spacings long; with a number of particles the spacing follows from a first
@@ -121,14 +137,15 @@ Start fill_bodies(const Scene& scene, const Features& features) {
       measure += measure_of(regions.back(), scene.dimensions);
     }
   };
-  if (fluid.spacing) {
-    build(coarse);
-  } else {
-    build(1e300);
-    build(std::pow(measure / static_cast<double>(*fluid.particles), 1.0 / scene.dimensions));
-  }
-  require_memory(scene, fluid.spacing ? measure / std::pow(coarse, scene.dimensions) : double(*fluid.particles));
-  const Filling filling = fill(regions, scene.dimensions, fluid.particles, fluid.spacing);
+  const auto fitting = [&] {
+    return std::pow(measure / static_cast<double>(*fluid.particles), 1.0 / scene.dimensions);
+  };
+  build(fluid.spacing.value_or(1e300));
+  if (!fluid.spacing) build(fitting());
+  require_runnable_size(scene, fluid.spacing ? *fluid.spacing : fitting());
+  require_memory(scene,
+                 fluid.spacing ? measure / std::pow(*fluid.spacing, scene.dimensions) : double(*fluid.particles));
+  const Filling filling = filled(scene, regions);
 
   Start start;
   start.spacing = filling.spacing;

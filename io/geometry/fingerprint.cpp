@@ -1,25 +1,10 @@
 // The hash that tells whether a run may go on from a checkpoint.
-#include <fmt/format.h>
-
 #include "io/geometry/assemble.h"
+#include "io/hash.h"
 
 namespace molten {
 
 namespace {
-
-/// FNV-1a over numbers' bytes.
-class Hash {
- public:
-  template <class T> void add(const T* data, std::size_t count) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(data);
-    for (std::size_t k = 0; k < count * sizeof(T); ++k) value_ = (value_ ^ bytes[k]) * 1099511628211ull;
-  }
-  template <class T> void add(const T& number) { add(&number, 1); }
-  std::string text() const { return fmt::format("{:016x}", value_); }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ull;
-};
 
 template <int Dim> void add_walls(Hash& hash, const Scene& scene, double spacing) {
   for (const Wall<Dim>& wall : build_walls<Dim>(scene, spacing)) {

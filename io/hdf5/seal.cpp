@@ -16,7 +16,7 @@ namespace {
 
 // Four running sums a 64-bit word each, so that the processor works on four multiplications at once. Every step is a
 // bijection of the sum and of the word: a change in one word always changes the result.
-class Hash {
+class BlockHash {
  public:
   void add(const char* data, std::size_t size) {  // every block but the last: a multiple of 32 bytes
     for (; size >= 32; data += 32, size -= 32)
@@ -47,7 +47,7 @@ class Hash {
 };
 
 std::uint64_t hash_behind_seal(std::istream& in) {
-  Hash hash;
+  BlockHash hash;
   std::vector<char> block(1 << 20);
   in.clear();
   in.seekg(seal_bytes);

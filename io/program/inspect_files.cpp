@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "io/geometry/mesh_file.h"
 #include "io/hdf5/checkpoint.h"
@@ -40,11 +41,19 @@ void print_checkpoint(const fs::path& file) {
   fmt::print("{}: checkpoint, t = {:.6g} s, step {}, molten {}\n", file.string(), head.time, head.step, head.version);
 }
 
+/// One line a member; lists and nested members on the line of theirs.
+void print_json(const fs::path& file) {
+  std::ifstream in(file);
+  if (!in) return;
+  const auto json = nlohmann::ordered_json::parse(in, nullptr, false);
+  if (!json.is_object()) return fmt::print("{}: damaged\n", file.filename().string());
+  fmt::print("{}\n", file.filename().string());
+  for (const auto& [key, value] : json.items())
+    fmt::print("  {:<26} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+}
+
 void print_run_folder(const fs::path& folder) {
-  for (const char* name : {"manifest.json", "summary.json"}) {
-    std::ifstream in(folder / name);
-    if (in) fmt::print("{}:\n{}", name, std::string(std::istreambuf_iterator<char>(in), {}));
-  }
+  for (const char* name : {"manifest.json", "summary.json"}) print_json(folder / name);
   for (const fs::path& file : list_checkpoints(folder)) print_checkpoint(file);
   const bool holds_run = fs::exists(folder / "manifest.json");  // which may well write no frames
   if (holds_run && (!fs::exists(folder / "frames") || fs::is_empty(folder / "frames")))

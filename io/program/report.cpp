@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "io/hash.h"
 #include "io/scene/scene_file.h"
 #include "version.h"
 
@@ -25,15 +26,14 @@ void write_json(const std::filesystem::path& file, const nlohmann::ordered_json&
   std::filesystem::rename(part, file);
 }
 
-/// FNV-1a of a file's bytes.
 std::string hash_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) return "";
-  std::uint64_t hash = 14695981039346656037ull;
-  for (char c; in.get(c);) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+  Hash hash;
+  std::vector<char> block(1 << 16);
+  while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0)
+    hash.add(block.data(), static_cast<std::size_t>(in.gcount()));
+  return hash.text();
 }
 
 nlohmann::ordered_json files_of(const Scene& scene) {

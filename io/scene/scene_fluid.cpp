@@ -52,7 +52,7 @@ void read_amount(const TomlReader& keys, Fluid& fluid) {
 // ---- rheology ----
 
 void read_jump_number(const TomlReader& keys, Rheology& rheology) {
-  const Range range{-1, 1e30, false, ""};
+  const Range range{-1, 1e12, false, ""};
   keys.require("jump_number", "give J, or [J hot, J cold]");
   if (!keys.node("jump_number")->is_array()) {
     keys.number("jump_number", rheology.jump_number[0], range);
@@ -60,8 +60,8 @@ void read_jump_number(const TomlReader& keys, Rheology& rheology) {
     return;
   }
   keys.numbers("jump_number", rheology.jump_number, range);
-  if (rheology.jump_number[0] > rheology.jump_number[1]) {
-    keys.fail("jump_number", "falls from hot to cold; the order is [hot, cold], the smaller one first");
+  if (rheology.jump_number[0] >= rheology.jump_number[1]) {
+    keys.fail("jump_number", "does not rise from hot to cold; give [hot, cold], the smaller one first, or one value");
   }
 }
 
@@ -123,7 +123,7 @@ std::optional<Heat> read_heat(const TomlReader& fluid, bool all_bodies_have_one)
   if (!keys) return std::nullopt;
   Heat heat;
   keys->require("diffusivity", "give the thermal diffusivity in m²/s");
-  keys->number("diffusivity", heat.diffusivity, Range::positive("m²/s"));
+  keys->number("diffusivity", heat.diffusivity, Range{0, 1e6, false, "m²/s"});
   std::array<double, 2> melting{};
   if (keys->numbers("melting_range", melting, Range::any("the scene's temperature unit"))) {
     if (melting[0] >= melting[1]) keys->fail("melting_range", "does not rise; give [T low, T high]");

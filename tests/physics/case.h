@@ -15,22 +15,9 @@
 #include "core/step.h"
 #include "io/geometry/assemble.h"
 #include "io/scene/scene_file.h"
+#include "tests/flavours.h"
 
 namespace molten::physics_case {
-
-/// {dimensions, precision} of a typed test.
-template <int dim_, class Real_> struct Flavour {
-  static constexpr int dim = dim_;
-  using Real = Real_;
-  static constexpr bool single = sizeof(Real) == 4;
-};
-using Flavours = ::testing::Types<Flavour<2, float>, Flavour<2, double>, Flavour<3, float>, Flavour<3, double>>;
-
-struct FlavourNames {
-  template <class F> static std::string GetName(int) {
-    return std::to_string(F::dim) + (F::single ? "dSingle" : "dDouble");
-  }
-};
 
 /// Small runs are quicker without threads, and a busy machine does not slow them.
 struct OneThread {

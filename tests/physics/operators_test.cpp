@@ -59,8 +59,7 @@ template <int Dim> double gradient_factor(const Parameters<Dim>& p) {
 }
 
 template <class F> class OperatorsOf : public testing::Test {};
-using Flavours = testing::Types<Flavour<2, float>, Flavour<2, double>, Flavour<3, float>, Flavour<3, double>>;
-TYPED_TEST_SUITE(OperatorsOf, Flavours);
+TYPED_TEST_SUITE(OperatorsOf, Flavours, FlavourNames);
 
 #define MOLTEN_FLAVOUR                   \
   constexpr int Dim = TypeParam::dim;    \
