@@ -109,6 +109,10 @@ inline constexpr int components = F::shape == FieldShape::scalar   ? 1
                                   : F::shape == FieldShape::vector ? Dim
                                                                    : Dim*(Dim + 1) / 2;
 
+template <class List, int Dim> inline constexpr int total_components = 0;
+template <class... F, int Dim>
+inline constexpr int total_components<FieldList<F...>, Dim> = (0 + ... + components<F, Dim>);
+
 template <class F, class Real>
 using stored_t = std::conditional_t<F::storage == Storage::real, Real,
                                     std::conditional_t<F::storage == Storage::exact, double, std::int64_t>>;

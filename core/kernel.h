@@ -49,18 +49,8 @@ constexpr double kernel_constant(KernelKind kind, int dim) {
   return 0;
 }
 
-/// A kernel's shape w(q) and slope w'(q)/q at q = r/h, zero at and beyond the support; each up to a constant factor
-/// that the kernel multiplies in once (slope_factor).
+/// A kernel's shape w(q) and slope w'(q)/q at q = r/h, zero at and beyond the support.
 template <class T> struct ShapeAndSlope { T w, slope; };
-
-/// What the slopes below are to be multiplied with.
-constexpr double slope_factor(KernelKind kind) { return kind == KernelKind::wendland_c2 ? -5 : 1; }
-
-template <class T> ShapeAndSlope<T> wendland_shape(T q) {
-  const T t = max(T(1) - T(0.5) * q, T(0));
-  const T t3 = t * t * t;
-  return {t3 * t * (T(2) * q + T(1)), t3};
-}
 
 template <class T> ShapeAndSlope<T> cubic_spline_shape(T q) {
   // The two branches as one: ¼ (2−q)₊³ − (1−q)₊³, the B-spline written with truncated powers. Near 0 the slope's
@@ -102,35 +92,42 @@ enum class KernelChoice { wendland_c2, cubic_spline, other };
 /// Evaluates weight · W and weight · W'(r)/r; `weight` is the particle mass (kg).
 template <KernelChoice choice, class Real> class Kernel {
  public:
-  Kernel(KernelKind kind, int dim, double smoothing_length, double weight)
-      : kind_(kind),
-        inverse_h_(Real(1 / smoothing_length)),
-        w_(Real(weight * kernel_constant(kind, dim) / std::pow(smoothing_length, dim))),
-        slope_(Real(weight * kernel_constant(kind, dim) * slope_factor(kind) / std::pow(smoothing_length, dim + 2))) {}
+  Kernel(KernelKind kind, int dim, double smoothing_length, double weight) : kind_(kind) {
+    const double shape = weight * kernel_constant(kind, dim) / std::pow(smoothing_length, dim);
+    const double slope = shape / (smoothing_length * smoothing_length);
+    if constexpr (choice == KernelChoice::wendland_c2) {
+      // The argument is t = ∛(5 slope) (q/2 − 1), negative within the support, so that W'/r is its cube; W ∝ t⁴ (5 − 4
+      // (1 − q/2)) follows from it.
+      const double scale = std::cbrt(5 * slope);
+      at_0_ = Real(-scale), per_r_ = Real(scale / (2 * smoothing_length));
+      w_ = Real(5 * shape / std::pow(scale, 4)), slope_ = Real(4 * shape / std::pow(scale, 5));
+    } else {
+      at_0_ = 0, per_r_ = Real(1 / smoothing_length);
+      w_ = Real(shape), slope_ = Real(slope);
+    }
+  }
 
   /// At the distance r (m).
-  template <class T> ShapeAndSlope<T> operator()(T r) const { return at(r * T(inverse_h_)); }
-  /// At the square of the distance (m²); a particle with itself has r = 0.
-  template <int N> ShapeAndSlope<Lanes<Real, N>> at_square(Lanes<Real, N> r2) const {
-    return at(scaled_sqrt(max(r2, Lanes<Real, N>(std::numeric_limits<Real>::min() * Real(1e8))), inverse_h_));
+  template <class T> ShapeAndSlope<T> operator()(T r) const { return at(T(at_0_) + T(per_r_) * r); }
+
+  /// The same in two steps, so that a loop may do the first ahead: what the shape is a function of, at the square of
+  /// the distance (m², above 0), and the kernel there.
+  template <int N> Lanes<Real, N> argument(Lanes<Real, N> r2) const { return affine_root(r2, at_0_, per_r_); }
+  template <class T> ShapeAndSlope<T> at(T argument) const {
+    if constexpr (choice == KernelChoice::wendland_c2) {
+      const T t = min(argument, T(0)), t3 = t * t * t;
+      return {t3 * t * (T(w_) + T(slope_) * t), t3};
+    } else {
+      const ShapeAndSlope<T> s =
+          choice == KernelChoice::cubic_spline ? cubic_spline_shape(argument) : uncommon_shape(kind_, argument);
+      return {T(w_) * s.w, T(slope_) * s.slope};
+    }
   }
 
  private:
-  template <class T> ShapeAndSlope<T> at(T q) const {
-    const ShapeAndSlope<T> s = shape(q);
-    return {T(w_) * s.w, T(slope_) * s.slope};
-  }
-  template <class T> ShapeAndSlope<T> shape(T q) const {
-    if constexpr (choice == KernelChoice::wendland_c2)
-      return wendland_shape(q);
-    else if constexpr (choice == KernelChoice::cubic_spline)
-      return cubic_spline_shape(q);
-    else
-      return uncommon_shape(kind_, q);
-  }
-
   KernelKind kind_;
-  Real inverse_h_, w_, slope_;
+  Real at_0_, per_r_;  // the shape's argument at r = 0, and its growth (1/m)
+  Real w_, slope_;
 };
 
 /// Calls f(kernel) with the kernel's type resolved.

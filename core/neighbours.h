@@ -1,5 +1,6 @@
 // Order and neighbours of the particles: sorts them into clusters along the grid's columns, and lists for every cluster
-// the clusters within the support radius and a skin. Good until a particle has moved half a skin.
+// those clusters of which a particle is within the support radius and a skin of one of its own. Good until a particle
+// has moved half a skin.
 #pragma once
 
 #include <cstdint>
@@ -96,7 +97,7 @@ template <int Dim, class Real> class Neighbours {
   void sort_columns(const Particles<Dim, Real>& particles);
   std::vector<std::int32_t> cluster_order(const Particles<Dim, Real>& particles, std::size_t& count);
   void find_boxes(const Particles<Dim, Real>& particles);
-  void list_neighbours();
+  void list_neighbours(const Particles<Dim, Real>& particles);
   void number_shifts();
   double list_range() const;
   NeighbourSettings settings_;

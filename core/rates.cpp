@@ -16,23 +16,19 @@ namespace molten {
 namespace {
 
 /// Strain rate → viscosity → stress, particle by particle.
-template <int Dim, class Real> struct ViscosityFinish {
-  State<Dim, Real>& s;
-
-  auto for_chunk(std::size_t) const {
-    return [this, stress_of = s.particles[stress], eta = s.particles[viscosity][0], delta = s.particles[compression][0],
-            T = s.particles[temperature][0]](std::size_t slot, const auto& sums) {
-      const Parameters<Dim>& p = s.parameters;
-      const Real rho0 = static_cast<Real>(p.eos.rest_density);
-      const SymTensor<Dim, Real> strain = (Real(1) / rho0) * sums[strain_rate];
-      const double magnitude = strain_magnitude(strain);
-      const double value = p.smd.viscosity(magnitude, T ? T[slot] : 0.0);
-      const Real density = rho0 * (1 + delta[slot]);
-      eta[slot] = static_cast<Real>(value);
-      stress_of.set(slot, (static_cast<Real>(value) / (density * density)) * strain);
-    };
-  }
-};
+template <int Dim, class Real> auto viscosity_finish(State<Dim, Real>& s) {
+  return PlainFinish{[&p = s.parameters, stress_of = s.particles[stress], eta = s.particles[viscosity][0],
+                      delta = s.particles[compression][0],
+                      T = s.particles[temperature][0]](std::size_t slot, const auto& sums) {
+    const Real rho0 = static_cast<Real>(p.eos.rest_density);
+    const SymTensor<Dim, Real> strain = (Real(1) / rho0) * sums[strain_rate];
+    const double magnitude = strain_magnitude(strain);
+    const double value = p.smd.viscosity(magnitude, T ? T[slot] : 0.0);
+    const Real density = rho0 * (1 + delta[slot]);
+    eta[slot] = static_cast<Real>(value);
+    stress_of.set(slot, (static_cast<Real>(value) / (density * density)) * strain);
+  }};
+}
 
 /// Sums → columns of rates; keeps the extremes of its chunk.
 template <int Dim, class Real> struct RatesFinish {
@@ -54,38 +50,46 @@ template <int Dim, class Real> struct RatesFinish {
     Real inverse_rest_density = static_cast<Real>(1 / s.parameters.eos.rest_density);
 
     template <class Sums> void operator()(std::size_t slot, const Sums& sums) {
-      const bool padding = ids[slot] == padding_id;
-      const Real alive = padding ? Real(0) : Real(1);
-      double a2 = 0, v2 = 0, x2 = 0;
+      using L = std::decay_t<decltype(sums[compression_rate])>;
+      constexpr int I = sizeof(L) / sizeof(Real);
+      L alive(Real(1)), a2(Real(0)), v2(Real(0));
+      for (int n = 0; n < I; ++n) set_lane(alive, n, ids[slot + n] == padding_id ? Real(0) : Real(1));
       for (int d = 0; d < Dim; ++d) {
-        const Real total = alive * (sums[acceleration][d] + static_cast<Real>(s.parameters.gravity[d]));
-        a[d][slot] = total;
-        a2 += double(total) * total;
-        v2 += double(v[d][slot]) * v[d][slot];
+        const L total = alive * (sums[acceleration][d] + L(static_cast<Real>(s.parameters.gravity[d])));
+        const L speed = alive * load<I>(v[d] + slot);
+        store(total, a[d] + slot);
+        a2 += total * total;
+        v2 += speed * speed;
       }
-      compression_rates[slot] = alive * inverse_rest_density * sums[compression_rate];
-      if constexpr (requires { sums[temperature_rate]; }) {
-        if (s.features.heat) {
-          temperature_rates[slot] = alive * sums[temperature_rate];
-          extremes.finite &= std::abs(temperature_rates[slot]) < 1e30;  // false for NaN
-        }
-      }
-      if constexpr (requires { sums[xsph_velocity]; }) {
-        for (int d = 0; d < Dim && s.features.xsph; ++d) {
-          x[d][slot] = alive * sums[xsph_velocity][d];
-          x2 += double(x[d][slot]) * x[d][slot];
-        }
-      }
-      if (padding) return;
-      extremes.acceleration2 = std::max(extremes.acceleration2, a2);
-      extremes.speed2 = std::max(extremes.speed2, v2);
-      extremes.xsph2 = std::max(extremes.xsph2, x2);
-      extremes.finite &= a2 < 1e60 && v2 < 1e60;  // false for NaN
-      if (s.features.heat) extremes.finite &= std::abs(temperature_rates[slot]) < 1e30;
+      store(alive * L(inverse_rest_density) * sums[compression_rate], compression_rates + slot);
+      raise(extremes.acceleration2, a2);
+      raise(extremes.speed2, v2);
+      if constexpr (requires { sums[temperature_rate]; })
+        if (s.features.heat) keep_heat(slot, L(alive * sums[temperature_rate]));
+      if constexpr (requires { sums[xsph_velocity]; })
+        if (s.features.xsph) keep_xsph(slot, alive * sums[xsph_velocity]);
       if (s.features.stress) {
-        const double density = s.parameters.eos.rest_density * (1 + compressions[slot]);
-        extremes.kinematic_viscosity = std::max(extremes.kinematic_viscosity, viscosities[slot] / density);
+        const L density = L(static_cast<Real>(s.parameters.eos.rest_density)) * (L(1) + load<I>(compressions + slot));
+        raise(extremes.kinematic_viscosity, alive * load<I>(viscosities + slot) * reciprocal(density));
       }
+    }
+
+    template <class L> void keep_heat(std::size_t slot, const L& rate) {
+      store(rate, temperature_rates + slot);
+      double magnitude = 0;
+      raise(magnitude, max(rate, -rate));
+      extremes.finite &= magnitude < 1e30;
+    }
+
+    template <class L> void keep_xsph(std::size_t slot, const Vec<Dim, L>& correction) {
+      for (int d = 0; d < Dim; ++d) store(correction[d], x[d] + slot);
+      raise(extremes.xsph2, dot(correction, correction));
+    }
+
+    /// Infinity stands for what is not a number, too.
+    template <class L> void raise(double& extreme, const L& value) const {
+      using Number = std::decay_t<decltype(lane(value, 0))>;
+      if (!all_at_most(value, static_cast<Number>(extreme))) extreme = largest(value);
     }
   };
   OfChunk for_chunk(std::size_t k) const { return {s, extremes[k], s.particles}; }
@@ -100,6 +104,7 @@ Extremes joined(const std::vector<Extremes>& parts) {
     all.kinematic_viscosity = std::max(all.kinematic_viscosity, e.kinematic_viscosity);
     all.finite = all.finite && e.finite;
   }
+  all.finite = all.finite && all.acceleration2 < INFINITY && all.speed2 < INFINITY;
   return all;
 }
 
@@ -113,7 +118,7 @@ template <int Dim, class Real, class F> void with_run_kernel(const State<Dim, Re
 
 template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("viscosity");
-  const ViscosityFinish<Dim, Real> finish{s};
+  const auto finish = viscosity_finish(s);
   with_run_kernel(s, [&](const auto& kernel) {
     pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, StrainRateTerm{});
   });
@@ -130,16 +135,18 @@ template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   const ArtificialViscosity<Real> artificial(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, rho0);
   with_run_kernel(s, [&](const auto& kernel) {
     const auto pass = [&](const auto&... terms) {
-      pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, continuity, pressure, artificial,
-                                    terms...);
+      pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, continuity, pressure, terms...);
     };
-    // Two instantiations: what every scene has, and with everything that a scene may have beside it.
+    // What most scenes have, without and with artificial viscosity; what melts; and all that a scene may have.
+    const StressForce<Dim, Real> stress_force(s.features.stress, rho0);
+    const HeatConduction<Real> conduction(s.features.heat ? p.diffusivity : 0, rho0);
     if (s.features.only_basic_forces())
-      pass();
+      artificial.on ? pass(Always(artificial)) : pass();
+    else if (stress_force.on && conduction.on && !s.features.xsph)
+      pass(artificial, Always(stress_force), Always(conduction));
     else
-      pass(LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0),
-           StressForce<Dim, Real>(s.features.stress, rho0),
-           HeatConduction<Real>(s.features.heat ? p.diffusivity : 0, rho0), XsphTerm<Real>(s.features.xsph, rho0));
+      pass(artificial, LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0), stress_force, conduction,
+           XsphTerm<Real>(s.features.xsph, rho0));
   });
   s.extremes = joined(extremes);
   if (s.features.laminar) s.extremes.kinematic_viscosity = p.viscosity / rho0;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 namespace molten {
@@ -24,6 +25,7 @@ inline constexpr int native_lanes =
 /// The compilers' vector types by name: g++ 12 does not take a vector size that depends on a template's parameters.
 template <class Real, int N> struct NativeVector;
 template <class Real> struct NativeVector<Real, 1> { typedef Real type; };
+template <> struct NativeVector<float, 4> { typedef float type __attribute__((vector_size(16))); };
 template <> struct NativeVector<float, 8> { typedef float type __attribute__((vector_size(32))); };
 template <> struct NativeVector<float, 16> { typedef float type __attribute__((vector_size(64))); };
 template <> struct NativeVector<double, 4> { typedef double type __attribute__((vector_size(32))); };
@@ -69,6 +71,21 @@ inline unsigned less_mask(Lanes<float, 8> a, Lanes<float, 8> b) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps((__m256)a.v, (__m256)b.v, _CMP_LT_OQ)));
 }
 
+/// a < b in any lane?
+template <class Real, int N> inline bool any_less(Lanes<Real, N> a, Lanes<Real, N> b) {
+  if constexpr (N == 1) return a.v < b.v;
+#if defined(__AVX512F__)
+  else if constexpr (N == 16)
+    return _mm512_cmp_ps_mask((__m512)a.v, (__m512)b.v, _CMP_LT_OQ) != 0;
+  else if constexpr (N == 8 && sizeof(Real) == 8)
+    return _mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_LT_OQ) != 0;
+#endif
+  else if constexpr (N == 8)
+    return less_mask(a, b) != 0;
+  else
+    return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)a.v, (__m256d)b.v, _CMP_LT_OQ)) != 0;
+}
+
 /// 8 consecutive numbers from memory.
 inline Lanes<float, 8> load_8(const float* p) { return Lanes<float, 8>((Lanes<float, 8>::Native)_mm256_loadu_ps(p)); }
 
@@ -83,8 +100,10 @@ template <class Real, int N> inline Lanes<Real, N> max(Lanes<Real, N> a, Lanes<R
 #endif
   else if constexpr (N == 8)
     return {(V)_mm256_max_ps((__m256)a.v, (__m256)b.v)};
-  else
+  else if constexpr (sizeof(Real) == 8)
     return {(V)_mm256_max_pd((__m256d)a.v, (__m256d)b.v)};
+  else
+    return {(V)_mm_max_ps((__m128)a.v, (__m128)b.v)};
 }
 template <class Real, int N> inline Lanes<Real, N> min(Lanes<Real, N> a, Lanes<Real, N> b) {
   using V [[maybe_unused]] = decltype(a.v);
@@ -97,8 +116,10 @@ template <class Real, int N> inline Lanes<Real, N> min(Lanes<Real, N> a, Lanes<R
 #endif
   else if constexpr (N == 8)
     return {(V)_mm256_min_ps((__m256)a.v, (__m256)b.v)};
-  else
+  else if constexpr (sizeof(Real) == 8)
     return {(V)_mm256_min_pd((__m256d)a.v, (__m256d)b.v)};
+  else
+    return {(V)_mm_min_ps((__m128)a.v, (__m128)b.v)};
 }
 
 /// 1/a to the precision of Real less about one bit: the hardware's estimate and one Newton step in single, a division
@@ -121,11 +142,12 @@ template <class Real, int N> inline Lanes<Real, N> reciprocal(Lanes<Real, N> a) 
   }
 }
 
-/// scale · √a for a > 0, to the same precision: with e ≈ 1/√a and s = a e, one Newton step is √a ≈ s (3 − s e)/2.
-template <class Real, int N> inline Lanes<Real, N> scaled_sqrt(Lanes<Real, N> a, Real scale) {
+/// c0 + c1 √a for a > 0, to the precision of Real less about one bit: in single with the hardware's e ≈ 1/√a and s = a
+/// e one Newton step is √a ≈ s (3 − s e)/2.
+template <class Real, int N> inline Lanes<Real, N> affine_root(Lanes<Real, N> a, Real c0, Real c1) {
   using L = Lanes<Real, N>;
   if constexpr (N == 1)
-    return scale * std::sqrt(a.v);
+    return c0 + c1 * std::sqrt(a.v);
   else if constexpr (sizeof(Real) == 4) {
     L e;
 #if defined(__AVX512F__)
@@ -135,7 +157,7 @@ template <class Real, int N> inline Lanes<Real, N> scaled_sqrt(Lanes<Real, N> a,
 #endif
       e.v = (typename L::Native)_mm256_rsqrt_ps((__m256)a.v);
     const L s = a * e;
-    return s * (L(Real(1.5) * scale) - L(Real(0.5) * scale) * (s * e));
+    return L(c0) + s * (L(Real(1.5) * c1) - L(Real(0.5) * c1) * (s * e));
   } else {
     L root;
 #if defined(__AVX512F__)
@@ -144,7 +166,7 @@ template <class Real, int N> inline Lanes<Real, N> scaled_sqrt(Lanes<Real, N> a,
     else
 #endif
       root.v = (typename L::Native)_mm256_sqrt_pd((__m256d)a.v);
-    return L(scale) * root;
+    return L(c0) + L(c1) * root;
   }
 }
 
@@ -195,32 +217,70 @@ template <int J, class Real, int N> inline Lanes<Real, N> load_j(const Real* p) 
   }
 }
 
-/// Adds up the J lanes of each i, pairwise: out[0 .. I).
-template <int I, class Real, int N> inline void sum_j(Lanes<Real, N> a, Real* out) {
-  if constexpr (N == 1)
-    out[0] = a.v;
-  else {
-    constexpr int J = N / I;
-    if constexpr (J == 1)
-      for (int i = 0; i < I; ++i) out[i] = a.v[i];
+/// Adds up the J lanes of each i, pairwise.
+template <int I, class Real, int N> inline Lanes<Real, I> sum_j(Lanes<Real, N> a) {
+  constexpr int J = N / I;
+  if constexpr (J == 1) return a;
 #if defined(__AVX512F__)
-    else if constexpr (J == 4 && N == 16) {
-      __m512 s = (__m512)a.v;
-      s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0xB1));
-      s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0x4E));
-      alignas(64) float t[16];
-      _mm512_store_ps(t, s);
-      for (int i = 0; i < 4; ++i) out[i] = t[4 * i];
-    }
-#endif
-    else {
-      for (int i = 0; i < I; ++i) {
-        Real s = 0;
-        for (int j = 0; j < J; ++j) s += a.v[i * J + j];
-        out[i] = s;
-      }
-    }
+  else if constexpr (J == 4 && N == 16) {
+    __m512 s = (__m512)a.v;
+    s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0xB1));
+    s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0x4E));
+    return {(typename Lanes<Real, I>::Native)_mm512_maskz_extractf32x4_ps(0xf, _mm512_maskz_compress_ps(0x1111, s), 0)};
   }
+#endif
+  else {
+    Lanes<Real, I> sums;
+    for (int i = 0; i < I; ++i) {
+      Real s = 0;
+      for (int j = 0; j < J; ++j) s += a.v[i * J + j];
+      sums.v[i] = s;
+    }
+    return sums;
+  }
+}
+
+// ---- the particles of a cluster, side by side -----------------------------------------------------------------------
+
+template <int N, class Real> inline Lanes<Real, N> load(const Real* p) {
+  Lanes<Real, N> a;
+  std::memcpy(&a.v, p, sizeof a.v);
+  return a;
+}
+template <class Real, int N> inline void store(Lanes<Real, N> a, Real* p) { std::memcpy(p, &a.v, sizeof a.v); }
+
+template <class Real, int N> inline Real lane(Lanes<Real, N> a, int k) {
+  if constexpr (N == 1)
+    return a.v;
+  else
+    return a.v[k];
+}
+
+template <class Real, int N> inline void set_lane(Lanes<Real, N>& a, int k, Real value) {
+  if constexpr (N == 1)
+    a.v = value;
+  else
+    a.v[k] = value;
+}
+
+/// Is every lane a number and not above the bound?
+template <class Real, int N> inline bool all_at_most(Lanes<Real, N> a, Real bound) {
+  if constexpr (N == 4 && sizeof(Real) == 4)
+    return _mm_movemask_ps(_mm_cmp_ps((__m128)a.v, _mm_set1_ps(bound), _CMP_NLE_UQ)) == 0;
+  else if constexpr (N == 4)
+    return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)a.v, _mm256_set1_pd(bound), _CMP_NLE_UQ)) == 0;
+  else {
+    bool all = true;
+    for (int k = 0; k < N; ++k) all &= lane(a, k) <= bound;
+    return all;
+  }
+}
+
+/// The largest lane; a lane that is not a number counts as infinite.
+template <class Real, int N> inline Real largest(Lanes<Real, N> a) {
+  Real most = lane(a, 0);
+  for (int k = 0; k < N; ++k) most = lane(a, k) <= most ? most : lane(a, k) == lane(a, k) ? lane(a, k) : INFINITY;
+  return most == most ? most : INFINITY;
 }
 
 }  // namespace molten
