@@ -13,14 +13,19 @@ namespace molten {
 enum class FieldShape { scalar, vector, tensor };  // tensor: symmetric
 enum class Storage { real, exact, id };            // real: the run's precision; exact: double; id: 64-bit integer
 
-template <FieldShape shape_, Storage storage_> struct Field {
+enum class Lifetime { run, step };  // step: made anew before each use, so it need not follow a sort
+
+template <FieldShape shape_, Storage storage_, Lifetime lifetime_ = Lifetime::run> struct Field {
   static constexpr FieldShape shape = shape_;
   static constexpr Storage storage = storage_;
+  static constexpr Lifetime lifetime = lifetime_;
 };
 
 using ScalarField = Field<FieldShape::scalar, Storage::real>;
 using VectorField = Field<FieldShape::vector, Storage::real>;
-using TensorField = Field<FieldShape::tensor, Storage::real>;
+using StepScalar = Field<FieldShape::scalar, Storage::real, Lifetime::step>;
+using StepVector = Field<FieldShape::vector, Storage::real, Lifetime::step>;
+using StepTensor = Field<FieldShape::tensor, Storage::real, Lifetime::step>;
 
 #define MOLTEN_FIELD(Type, Base, tag, unit_, meaning_)    \
   struct Type : Base {                                    \
@@ -48,20 +53,20 @@ MOLTEN_FIELD(PreviousCompressionRate, ScalarField, previous_compression_rate, "1
 MOLTEN_FIELD(OlderCompressionRate, ScalarField, older_compression_rate, "1/s", "compression rate two steps ago");
 
 // What the passes compute for each other, from the above.
-MOLTEN_FIELD(LocalPosition, VectorField, local_position, "m",
+MOLTEN_FIELD(LocalPosition, StepVector, local_position, "m",
              "position relative to the cluster's origin, on the grid's quantum");
-MOLTEN_FIELD(LocalTemperature, ScalarField, local_temperature, "K", "temperature less the run's reference temperature");
-MOLTEN_FIELD(PressureTerm, ScalarField, pressure_term, "Pa m6/kg2", "pressure / density^2");
-MOLTEN_FIELD(Viscosity, ScalarField, viscosity, "Pa s", "dynamic viscosity");
-MOLTEN_FIELD(Stress, TensorField, stress, "Pa m6/kg2", "viscous stress / density^2");
-MOLTEN_FIELD(Acceleration, VectorField, acceleration, "m/s2", "acceleration");
-MOLTEN_FIELD(CompressionRate, ScalarField, compression_rate, "1/s", "rate of compression");
-MOLTEN_FIELD(TemperatureRate, ScalarField, temperature_rate, "K/s", "rate of temperature");
-MOLTEN_FIELD(XsphVelocity, VectorField, xsph_velocity, "m/s", "XSPH correction of the velocity, before its factor");
+MOLTEN_FIELD(LocalTemperature, StepScalar, local_temperature, "K", "temperature less the run's reference temperature");
+MOLTEN_FIELD(PressureTerm, StepScalar, pressure_term, "Pa m6/kg2", "pressure / density^2");
+MOLTEN_FIELD(Viscosity, StepScalar, viscosity, "Pa s", "dynamic viscosity");
+MOLTEN_FIELD(Stress, StepTensor, stress, "Pa m6/kg2", "viscous stress / density^2");
+MOLTEN_FIELD(Acceleration, StepVector, acceleration, "m/s2", "acceleration");
+MOLTEN_FIELD(CompressionRate, StepScalar, compression_rate, "1/s", "rate of compression");
+MOLTEN_FIELD(TemperatureRate, StepScalar, temperature_rate, "K/s", "rate of temperature");
+MOLTEN_FIELD(XsphVelocity, StepVector, xsph_velocity, "m/s", "XSPH correction of the velocity, before its factor");
 
 // Sums that a pass uses up itself; never a column.
-MOLTEN_FIELD(StrainRate, TensorField, strain_rate, "1/s", "rate of strain, grad v + its transpose");
-MOLTEN_FIELD(KernelSum, ScalarField, kernel_sum, "1", "sum of m W");
+MOLTEN_FIELD(StrainRate, StepTensor, strain_rate, "1/s", "rate of strain, grad v + its transpose");
+MOLTEN_FIELD(KernelSum, StepScalar, kernel_sum, "1", "sum of m W");
 
 #undef MOLTEN_FIELD
 

@@ -133,14 +133,14 @@ template <int Dim, class Real> void Neighbours<Dim, Real>::sort(Particles<Dim, R
   });
   sort_columns(particles);
   std::size_t count = 0;
-  const std::vector<std::int32_t> order = cluster_order(particles, count);
+  const std::vector<std::int32_t> order = cluster_order(count);
   dropped_ += particles.count() - count;
   particles.permute(order, count);
   for_each_slot(particles.slots(), [&](std::size_t s) { localise(particles, s); });
 }
 
 /// Fills entries_ column by column, each sorted along the column; ties by id, so that the order depends on state alone.
-template <int Dim, class Real> void Neighbours<Dim, Real>::sort_columns(const Particles<Dim, Real>& particles) {
+template <int Dim, class Real> void Neighbours<Dim, Real>::sort_columns(Particles<Dim, Real>& particles) {
   const std::size_t slots = particles.slots(), columns = grid_.columns();
   const auto x = particles[position];
   const auto ids = particles[id][0];
@@ -159,7 +159,8 @@ template <int Dim, class Real> void Neighbours<Dim, Real>::sort_columns(const Pa
     if (column_of[s] != nowhere) ++next[column_of[s] + 1];
   for (std::size_t c = 0; c < columns; ++c) next[c + 1] += next[c];
   entry_begin_.assign(next.begin(), next.end());
-  entries_.resize(next[columns]);
+  const std::size_t entries = next[columns];
+  entries_ = {static_cast<Entry*>(particles.scratch(entries * sizeof(Entry))), entries};
   for (std::size_t s = 0; s < slots; ++s)
     if (column_of[s] != nowhere)
       entries_[next[column_of[s]]++] = {static_cast<float>(x[Dim - 1][s] - grid_.lower[Dim - 1]),
@@ -174,8 +175,7 @@ template <int Dim, class Real> void Neighbours<Dim, Real>::sort_columns(const Pa
 }
 
 /// Cuts the sorted columns into clusters; gives cells_ and column_begin_, and for every new slot its old one.
-template <int Dim, class Real>
-std::vector<std::int32_t> Neighbours<Dim, Real>::cluster_order(const Particles<Dim, Real>&, std::size_t& count) {
+template <int Dim, class Real> std::vector<std::int32_t> Neighbours<Dim, Real>::cluster_order(std::size_t& count) {
   const std::size_t columns = grid_.columns();
   const float longest = static_cast<float>(longest_cluster * settings_.spacing);
   const auto cluster_end = [&](std::uint32_t begin, std::uint32_t end) {
@@ -215,12 +215,16 @@ std::vector<std::int32_t> Neighbours<Dim, Real>::cluster_order(const Particles<D
 
 // ---- the list -------------------------------------------------------------------------------------------------------
 
-template <int Dim, class Real> void Neighbours<Dim, Real>::find_boxes(const Particles<Dim, Real>& particles) {
+template <int Dim, class Real> void Neighbours<Dim, Real>::find_boxes(Particles<Dim, Real>& particles) {
   constexpr float out_of_reach = std::numeric_limits<float>::max() / 4;
-  for (int d = 0; d < Dim; ++d) {
-    boxes_.lower[d].assign(clusters() + boxes_at_once, out_of_reach);
-    boxes_.upper[d].assign(clusters() + boxes_at_once, out_of_reach);
-  }
+  const std::size_t length = clusters() + boxes_at_once;
+  auto* memory = static_cast<float*>(particles.scratch(2 * Dim * length * sizeof(float)));
+  for (int d = 0; d < Dim; ++d)
+    for (float** side : {&boxes_.lower[d], &boxes_.upper[d]}) {
+      *side = memory;
+      std::fill_n(memory + clusters(), boxes_at_once, out_of_reach);
+      memory += length;
+    }
   const auto local = particles[local_position];
   for_each_slot(clusters(), [&](std::size_t c) {
     for (int d = 0; d < Dim; ++d) {
@@ -348,8 +352,8 @@ template <int Dim, class Real> class Neighbours<Dim, Real>::Lister {
       lower[d] = boxes.lower[d][cluster] - target.shift[d];
       upper[d] = boxes.upper[d][cluster] - target.shift[d];
     }
-    const float* top = boxes.upper[along].data();
-    const float* bottom = boxes.lower[along].data();
+    const float* top = boxes.upper[along];
+    const float* bottom = boxes.lower[along];
     // The clusters that follow here lie no lower than this one by more than the slack allows for.
     while (target.cursor < target.end && top[target.cursor] < lower[along] - slack_) ++target.cursor;
     const std::int32_t number = target.number - n_.cells_[cluster][along];
@@ -364,8 +368,8 @@ template <int Dim, class Real> class Neighbours<Dim, Real>::Lister {
     using L = Lanes<float, boxes_at_once>;
     L distance2(0.f);
     for (int d = 0; d < Dim; ++d) {
-      const L gap = max(L(0.f), max(load_8(n_.boxes_.lower[d].data() + first) - L(upper[d]),
-                                    L(lower[d]) - load_8(n_.boxes_.upper[d].data() + first)));
+      const L gap = max(L(0.f), max(load_8(n_.boxes_.lower[d] + first) - L(upper[d]),
+                                    L(lower[d]) - load_8(n_.boxes_.upper[d] + first)));
       distance2 += gap * gap;
     }
     if (count_ + boxes_at_once > found_.size()) found_.resize(2 * found_.size());
@@ -427,9 +431,7 @@ template <int Dim, class Real> void Neighbours<Dim, Real>::list_neighbours(const
 }
 
 template <int Dim, class Real> std::size_t Neighbours<Dim, Real>::bytes() const {
-  std::size_t sum =
-      bytes_of(cells_) + bytes_of(column_begin_) + bytes_of(entries_) + bytes_of(entry_begin_) + bytes_of(chunks_);
-  for (int d = 0; d < Dim; ++d) sum += bytes_of(boxes_.lower[d]) + bytes_of(boxes_.upper[d]);
+  std::size_t sum = bytes_of(cells_) + bytes_of(column_begin_) + bytes_of(entry_begin_) + bytes_of(chunks_);
   for (const ClusterChunk& c : chunks_) sum += bytes_of(c.entries) + bytes_of(c.entry_begin);
   return sum;
 }

@@ -86,17 +86,17 @@ template <int Dim, class Real> class Neighbours {
 
  private:
   /// Bounding boxes of the clusters (m): across relative to the column's origin, along from the grid's lower end. Some
-  /// boxes out of reach follow the last, for loops that take several at once.
+  /// boxes out of reach follow the last, for loops that take several at once. While listing, in the particles' scratch.
   struct Boxes {
-    std::vector<float> lower[Dim], upper[Dim];
+    float *lower[Dim], *upper[Dim];
   };
   class Lister;
   void choose_grid(const Particles<Dim, Real>& particles);
   void choose_quantum();
   void sort(Particles<Dim, Real>& particles);
-  void sort_columns(const Particles<Dim, Real>& particles);
-  std::vector<std::int32_t> cluster_order(const Particles<Dim, Real>& particles, std::size_t& count);
-  void find_boxes(const Particles<Dim, Real>& particles);
+  void sort_columns(Particles<Dim, Real>& particles);
+  std::vector<std::int32_t> cluster_order(std::size_t& count);
+  void find_boxes(Particles<Dim, Real>& particles);
   void list_neighbours(const Particles<Dim, Real>& particles);
   void number_shifts();
   double list_range() const;
@@ -115,7 +115,7 @@ template <int Dim, class Real> class Neighbours {
     float along;        // position along the column, m from the grid's lower end
     std::int32_t slot;  // old slot
   };
-  std::vector<Entry> entries_;              // sort scratch
+  std::span<Entry> entries_;                // while sorting, in the particles' scratch
   std::vector<std::uint32_t> entry_begin_;  // by column
 };
 

@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 #include <string>
@@ -12,17 +13,20 @@ namespace molten {
 
 void Buffer::resize(std::size_t bytes) {
   if (bytes <= capacity_) return;
-  constexpr std::size_t huge_page = std::size_t{1} << 21;
-  const std::size_t alignment = bytes >= huge_page ? huge_page : 64;
+  constexpr std::size_t page = std::size_t{1} << 21;
+  const std::size_t alignment = bytes >= page ? page : 64;
   const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
   data_.reset(std::aligned_alloc(alignment, rounded));
   if (!data_) throw std::bad_alloc();
-  if (alignment == huge_page) madvise(data_.get(), rounded, MADV_HUGEPAGE);
+  if (alignment == page) madvise(data_.get(), rounded, MADV_HUGEPAGE);
   capacity_ = rounded;
+  for_each_piece((rounded + page - 1) / page, [&](std::size_t k) {
+    std::memset(static_cast<char*>(data_.get()) + k * page, 0, std::min(page, rounded - k * page));
+  });
 }
 
 template <int Dim, class Real> Particles<Dim, Real>::Particles(FieldSet active) : active_(active) {
-  active_.set(field_index<Id>);
+  active_ |= field_set(FieldList<Id, LocalPosition>{});
 }
 
 template <int Dim, class Real> void Particles<Dim, Real>::resize(std::size_t slots, std::size_t count) {
@@ -44,20 +48,22 @@ template <int Dim, class Real> std::size_t Particles<Dim, Real>::bytes() const {
 template <int Dim, class Real>
 void Particles<Dim, Real>::permute(std::span<const std::int32_t> order, std::size_t count) {
   for_each_field([&]<class F>(F) {
-    if (!active_.test(field_index<F>)) return;
+    if (!active_.test(field_index<F>) || F::lifetime == Lifetime::step) return;
     using T = stored_t<F, Real>;
     constexpr T filling = F::storage == Storage::id ? T(padding_id) : T(0);
+    // A column changes places with one of its size whose contents are not needed.
+    Buffer& spare = F::storage == Storage::real ? columns_[first_component<LocalPosition>()] : scratch_;
+    spare.resize(order.size() * sizeof(T));
     for (int k = 0; k < components<F, Dim>; ++k) {
       Buffer& column = columns_[first_component<F>() + k];
-      scratch_.resize(order.size() * sizeof(T));
       const T* from = static_cast<const T*>(column.data());
-      T* to = static_cast<T*>(scratch_.data());
+      T* to = static_cast<T*>(spare.data());
       for_each_slot(order.size(), [&](std::size_t s) { to[s] = order[s] < 0 ? filling : from[order[s]]; });
-      column.swap(scratch_);
+      column.swap(spare);
+      spare.resize(order.size() * sizeof(T));
     }
   });
-  slots_ = order.size();
-  count_ = count;
+  resize(order.size(), count);
 }
 
 template <int Dim, class Real> void Particles<Dim, Real>::archive(Archive& a) {

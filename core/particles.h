@@ -26,7 +26,7 @@ template <class... F> FieldSet field_set(FieldList<F...>) {
   return s;
 }
 
-/// Uninitialised memory on cache-line (large: huge-page) boundaries.
+/// Memory on cache-line (large: huge-page) boundaries, zero at first.
 class Buffer {
  public:
   void resize(std::size_t bytes);  // contents are lost when it has to grow
@@ -83,8 +83,15 @@ template <int Dim, class Real> class Particles {
 
   bool is_padding(std::size_t slot) const { return (*this)[id][0][slot] == padding_id; }
 
-  /// New slot s takes old slot order[s]; -1 makes it padding (id -1, all else zero).
+  /// New slot s takes old slot order[s]; -1 makes it padding (id -1, all else zero). Fields that live for a step are
+  /// lost.
   void permute(std::span<const std::int32_t> order, std::size_t count);
+
+  /// Memory that lasts until the next permute, for whoever sorts: `bytes` of it, at best no more than 8 a slot.
+  void* scratch(std::size_t bytes) {
+    scratch_.resize(bytes);
+    return scratch_.data();
+  }
 
   void archive(Archive& a);
 
