@@ -30,6 +30,12 @@ template <int Dim, class Real> auto viscosity_finish(State<Dim, Real>& s) {
   }};
 }
 
+template <int Dim, class Real> Vec<Dim, Real> in_real(const std::array<double, Dim>& v) {
+  Vec<Dim, Real> r;
+  for (int d = 0; d < Dim; ++d) r[d] = static_cast<Real>(v[d]);
+  return r;
+}
+
 /// Sums → columns of rates; keeps the extremes of its chunk.
 template <int Dim, class Real> struct RatesFinish {
   State<Dim, Real>& s;
@@ -47,6 +53,7 @@ template <int Dim, class Real> struct RatesFinish {
     Real* temperature_rates = p[temperature_rate][0];
     const Real* viscosities = p[viscosity][0];
     const Real* compressions = p[compression][0];
+    Vec<Dim, Real> gravity = in_real<Dim, Real>(s.parameters.gravity);
     Real inverse_rest_density = static_cast<Real>(1 / s.parameters.eos.rest_density);
 
     template <class Sums> void operator()(std::size_t slot, const Sums& sums) {
@@ -55,7 +62,7 @@ template <int Dim, class Real> struct RatesFinish {
       L alive(Real(1)), a2(Real(0)), v2(Real(0));
       for (int n = 0; n < I; ++n) set_lane(alive, n, ids[slot + n] == padding_id ? Real(0) : Real(1));
       for (int d = 0; d < Dim; ++d) {
-        const L total = alive * (sums[acceleration][d] + L(static_cast<Real>(s.parameters.gravity[d])));
+        const L total = alive * (sums[acceleration][d] + L(gravity[d]));
         const L speed = alive * load<I>(v[d] + slot);
         store(total, a[d] + slot);
         a2 += total * total;
