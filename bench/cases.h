@@ -1,7 +1,7 @@
-// The states that benchmarks run on, and the naive check that each passes before it is timed.
+// The states that benchmarks run on, and the naive check that each passes before it is timed. (The moving dam break is
+// in dam_break.h.)
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "core/state.h"
@@ -15,7 +15,7 @@ template <int Dim, class Real> State<Dim, Real> jittered_block(long long count, 
 /// scenes/bunny.toml as it starts, or a ball of as many particles where the model was not fetched.
 template <class Real> State<3, Real> bunny();
 
-/// Compares the rates of some particles with a brute-force sum in double; returns an empty string or what differs.
+/// Finds the rates and compares those of some particles with the naive twin; returns an empty string or what differs.
 template <int Dim, class Real> std::string check_rates(State<Dim, Real>& s);
 
 }  // namespace molten::bench
