@@ -15,8 +15,6 @@
 
 namespace molten::bench {
 
-namespace {
-
 template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Start& start) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
   Contact<Dim> contact(build_walls<Dim>(scene, start.spacing), start.spacing / 2, p.support_radius);
@@ -36,10 +34,7 @@ Scene tank(int dimensions, double smoothing_ratio) {
   return scene;
 }
 
-}  // namespace
-
-template <int Dim, class Real> State<Dim, Real> jittered_block(long long count, double smoothing_ratio) {
-  const Scene scene = tank(Dim, smoothing_ratio);
+template <int Dim, class Real> State<Dim, Real> block_in(const Scene& scene, long long count) {
   const auto side = static_cast<int>(std::lround(std::pow(static_cast<double>(count), 1.0 / Dim)));
   Start start;
   start.spacing = 1.0 / side;
@@ -54,7 +49,32 @@ template <int Dim, class Real> State<Dim, Real> jittered_block(long long count, 
         start.position.push_back({at(i), at(j), Dim == 3 ? at(k) : 0.0});
         start.velocity.push_back({jitter(random), jitter(random), Dim == 3 ? jitter(random) : 0.0});
       }
+  if (scene.fluid.heat) start.temperature.assign(start.position.size(), scene.fluid.heat->initial_bottom);
   return state_of<Dim, Real>(scene, start);
+}
+
+template <int Dim, class Real> State<Dim, Real> jittered_block(long long count, double smoothing_ratio) {
+  return block_in<Dim, Real>(tank(Dim, smoothing_ratio), count);
+}
+
+template <int Dim, class Real> State<Dim, Real> full_block(long long count, double smoothing_ratio) {
+  Scene scene = tank(Dim, smoothing_ratio);
+  scene.fluid.rheology.model = Rheology::Model::smd;
+  scene.fluid.heat = Heat{1e-5, std::nullopt, 20, 20};
+  scene.numerics.xsph = Xsph{};
+  State<Dim, Real> s = block_in<Dim, Real>(scene, count);
+  const Particles<Dim, Real>& p = s.particles;
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> of(-1, 1);
+  for (std::size_t slot = 0; slot < p.slots(); ++slot) {
+    if (p.is_padding(slot)) continue;
+    p[compression][0][slot] = static_cast<Real>(0.01 * of(random));
+    p[temperature][0][slot] = 20 + 10 * of(random);
+    p[viscosity][0][slot] = static_cast<Real>(50 + 40 * of(random));
+    for (Real* stresses : p[stress].c) stresses[slot] = static_cast<Real>(1e-3 * of(random));
+  }
+  prepare(s);
+  return s;
 }
 
 template <class Real> State<3, Real> bunny() {
@@ -121,10 +141,17 @@ template <int Dim, class Real> std::string check_rates(State<Dim, Real>& s) {
   return wrong;
 }
 
+template State<2, float> state_of(const Scene&, const Start&);
+template State<2, double> state_of(const Scene&, const Start&);
+template State<3, float> state_of(const Scene&, const Start&);
+template State<3, double> state_of(const Scene&, const Start&);
+template State<3, float> block_in(const Scene&, long long);
 template State<2, float> jittered_block(long long, double);
 template State<2, double> jittered_block(long long, double);
 template State<3, float> jittered_block(long long, double);
 template State<3, double> jittered_block(long long, double);
+template State<3, float> full_block(long long, double);
+template State<3, double> full_block(long long, double);
 template State<3, float> bunny();
 template State<3, double> bunny();
 template std::string check_rates(State<2, float>&);

@@ -4,13 +4,26 @@
 
 #include <string>
 
+#include "core/scene.h"
 #include "core/state.h"
 
 namespace molten::bench {
 
-/// A block of water of about `count` particles, each moved at random by up to a tenth of the spacing, in random slow
-/// motion, in a tank three times as long; h = `smoothing_ratio` spacings, c = 10 √(2 g H).
+/// A run of a scene as it starts.
+template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Start& start);
+
+/// A tank three times as long as the block of water in it; h = `smoothing_ratio` spacings.
+Scene tank(int dimensions, double smoothing_ratio);
+
+/// A block of about `count` particles in that tank or another scene, each moved at random by up to a tenth of the
+/// spacing, in random slow motion.
+template <int Dim, class Real> State<Dim, Real> block_in(const Scene& scene, long long count);
+
+/// The block of water in the tank, c = 10 √(2 g H).
 template <int Dim, class Real> State<Dim, Real> jittered_block(long long count, double smoothing_ratio);
+
+/// The same with every column that a term reads: temperatures, viscosities, stresses and compressions at random.
+template <int Dim, class Real> State<Dim, Real> full_block(long long count, double smoothing_ratio);
 
 /// scenes/bunny.toml as it starts, or a ball of as many particles where the model was not fetched.
 template <class Real> State<3, Real> bunny();

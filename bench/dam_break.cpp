@@ -10,6 +10,7 @@
 #include <fstream>
 #include <vector>
 
+#include "bench/cases.h"
 #include "core/step.h"
 #include "io/geometry/assemble.h"
 #include "io/scene/scene_file.h"
@@ -52,21 +53,15 @@ template <int Dim> double time_of_interest(const Scene& scene) {
   return 0.5 * std::sqrt((column.max[Dim - 1] - column.min[Dim - 1]) / 9.81);
 }
 
-template <int Dim, class Real> State<Dim, Real> state_at_rest(const Scene& scene, const Start& start) {
-  const Parameters<Dim> p = parameters_of<Dim>(scene, start);
-  Contact<Dim> contact(build_walls<Dim>(scene, start.spacing), start.spacing / 2, p.support_radius);
-  return make_state<Dim, Real>(features_of(scene), p, std::move(contact), start);
-}
-
 template <int Dim, class Real>
-State<Dim, Real> state_of(const Scene& scene, const Start& rest, const Motions<Dim>& motions) {
+State<Dim, Real> state_in_motion(const Scene& scene, const Start& rest, const Motions<Dim>& motions) {
   Start start = rest;
   for (std::size_t k = 0; k < motions.of.size(); ++k)
     for (int d = 0; d < Dim; ++d) {
       start.position[k][d] = motions.of[k][d];
       start.velocity[k][d] = motions.of[k][Dim + d];
     }
-  State<Dim, Real> s = state_at_rest<Dim, Real>(scene, start);
+  State<Dim, Real> s = state_of<Dim, Real>(scene, start);
   Particles<Dim, Real>& p = s.particles;
   for (std::size_t slot = 0; slot < p.slots(); ++slot) {
     if (p.is_padding(slot)) continue;
@@ -180,14 +175,14 @@ template <int Dim> Motions<Dim> refined(const CoarseField<Dim>& coarse, const St
 }
 
 template <int Dim> Motions<Dim> from_rest(const Scene& scene, const Start& rest) {
-  auto s = state_at_rest<Dim, float>(scene, rest);
+  auto s = state_of<Dim, float>(scene, rest);
   s.clock.stop = time_of_interest<Dim>(scene);
   while (s.clock.time < s.clock.stop) step(s);
   return motions_of(s);
 }
 
 template <int Dim> Motions<Dim> settled(const Scene& scene, const Start& rest, const Motions<Dim>& start) {
-  auto s = state_of<Dim, float>(scene, rest, start);
+  auto s = state_in_motion<Dim, float>(scene, rest, start);
   for (int k = 0; k < settling_steps; ++k) step(s);
   return motions_of(s);
 }
@@ -244,7 +239,7 @@ template <int Dim> Motions<Dim> prepared(const Scene& scene, const Start& rest) 
 template <int Dim, class Real> State<Dim, Real> moving_dam_break(long long count, double smoothing_ratio) {
   const Scene scene = scene_of<Dim>(count, smoothing_ratio);
   const Start rest = fill_bodies(scene, features_of(scene));
-  return state_of<Dim, Real>(scene, rest, prepared<Dim>(scene, rest));
+  return state_in_motion<Dim, Real>(scene, rest, prepared<Dim>(scene, rest));
 }
 
 template State<2, float> moving_dam_break(long long, double);

@@ -13,7 +13,7 @@ namespace molten::bench {
 
 /// Calls f(field, component) for each component of a list of fields.
 template <int Dim, class... Fs, class F> void for_each_component(FieldList<Fs...>, F&& f) {
-  const auto of = [&]<class G>(G field) {
+  [[maybe_unused]] const auto of = [&]<class G>(G field) {
     for (int k = 0; k < components<G, Dim>; ++k) f(field, k);
   };
   (of(Fs{}), ...);

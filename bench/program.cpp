@@ -32,7 +32,7 @@ std::vector<std::string> flags_of(int argc, char** argv) {
       filter += (filter.empty() ? "^(" : "|") + word;
   }
   if (!filter.empty())
-    flags.push_back("--benchmark_filter=" + filter + (exact ? ")(/iterations.*|/real_time)?$" : ")"));
+    flags.push_back("--benchmark_filter=" + filter + (exact ? ")(/iterations.*|/real_time|/manual_time)?$" : ")"));
   return flags;
 }
 

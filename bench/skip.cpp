@@ -1,0 +1,196 @@
+// What a feature costs a scene that does not ask for it, and one that does:
+//   build/release/bench/skip [skip/FEATURE ...] [--steps=N]
+// For every optional feature three runs of one block of water take a step each in turn: `minimal`, without the feature
+// compiled in (minimal.h: exactly the terms that the scene needs), `off`, the solver's own step for the same scene, and
+// `on`, for the scene with the feature. Where the solver has instantiations without the feature, the scene asks for
+// another optional feature that brings it in. The ratios are medians over batches of steps, with the interval that
+// holds the median with 95 % confidence; at the end they are printed as a table. Before they are timed, minimal and off
+// must have got to the same places.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bench/cases.h"
+#include "bench/minimal.h"
+#include "bench/program.h"
+
+namespace molten::bench {
+namespace {
+
+using S = State<3, float>;
+using Step = std::function<void(S&)>;
+constexpr int batch = 5;  // steps
+
+struct Ratio {
+  double median, low, high;
+};
+
+/// With 95 % confidence by order statistics, in the normal approximation of the binomial.
+Ratio ratio_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto n = static_cast<double>(values.size());
+  const auto margin = static_cast<std::size_t>(std::max(0.0, std::floor((n - 1.96 * std::sqrt(n)) / 2)));
+  return {values[values.size() / 2], values[margin], values[values.size() - 1 - margin]};
+}
+
+struct Result {
+  std::string feature;
+  double minimal, off, on;  // s a step, medians
+  Ratio off_ratio, on_ratio;
+};
+std::vector<Result> results;
+
+double median(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+/// The largest difference of any particle's position after the same steps, in spacings.
+double apart(const S& a, const S& b) {
+  std::vector<std::array<double, 3>> place(a.particles.count());
+  const auto for_each = [](const S& s, auto&& f) {
+    for (std::size_t slot = 0; slot < s.particles.slots(); ++slot)
+      if (!s.particles.is_padding(slot)) f(slot, static_cast<std::size_t>(s.particles[id][0][slot]));
+  };
+  for_each(a, [&](std::size_t slot, std::size_t k) {
+    for (int d = 0; d < 3; ++d) place[k][d] = a.particles[position][d][slot];
+  });
+  double most = 0;
+  for_each(b, [&](std::size_t slot, std::size_t k) {
+    for (int d = 0; d < 3; ++d) most = std::max(most, std::abs(b.particles[position][d][slot] - place[k][d]));
+  });
+  return most / a.parameters.spacing;
+}
+
+struct Comparison {
+  std::string feature;
+  Scene without, with;
+  Step minimal;
+};
+
+void compare(benchmark::State& bench, const Comparison& c) {
+  S states[3] = {block_in<3, float>(c.without, 100000), block_in<3, float>(c.without, 100000),
+                 block_in<3, float>(c.with, 100000)};
+  const Step steps[3] = {c.minimal, step<3, float>, step<3, float>};
+  for (int k = 0; k < 20; ++k)
+    for (int which = 0; which < 3; ++which) steps[which](states[which]);
+  if (const double way = apart(states[0], states[1]); !(way < 1e-3))
+    return bench.SkipWithError(fmt::format("the minimal step is off by {} spacings", way).c_str());
+  std::vector<double> seconds[3];
+  int turn = 0;
+  for (auto _ : bench) {
+    double sum[3] = {};
+    for (int k = 0; k < batch; ++k, ++turn)
+      for (int n = 0; n < 3; ++n) {
+        const int which = turn % 2 == 0 ? n : 2 - n;
+        const Stopwatch watch;
+        steps[which](states[which]);
+        sum[which] += watch.seconds();
+      }
+    for (int which = 0; which < 3; ++which) seconds[which].push_back(sum[which] / batch);
+    bench.SetIterationTime(sum[1]);
+  }
+  std::vector<double> off, on;
+  for (std::size_t k = 0; k < seconds[0].size(); ++k) {
+    off.push_back(seconds[1][k] / seconds[0][k]);
+    on.push_back(seconds[2][k] / seconds[0][k]);
+  }
+  const Result r{c.feature, median(seconds[0]), median(seconds[1]), median(seconds[2]), ratio_of(off), ratio_of(on)};
+  results.push_back(r);
+  bench.counters["minimal_ms"] = 1e3 * r.minimal;
+  bench.counters["off_ms"] = 1e3 * r.off;
+  bench.counters["on_ms"] = 1e3 * r.on;
+  bench.counters["off_ratio"] = r.off_ratio.median;
+  bench.counters["off_ratio_low"] = r.off_ratio.low;
+  bench.counters["off_ratio_high"] = r.off_ratio.high;
+  bench.counters["on_ratio"] = r.on_ratio.median;
+}
+
+// ---- the scenes, and what each needs --------------------------------------------------------------------------------
+
+Scene plain() {
+  Scene scene = tank(3, 1.3);
+  scene.boundaries.clear();
+  return scene;
+}
+Scene with_heat(Scene scene) {
+  scene.fluid.heat = Heat{1e-5, std::nullopt, 20, 20};
+  return scene;
+}
+Scene with_smd(Scene scene) {
+  Rheology& r = scene.fluid.rheology;
+  r.model = Rheology::Model::smd;
+  r.jump_number = {15, 15};
+  return scene;
+}
+Scene with_laminar(Scene scene) {
+  scene.fluid.rheology.viscosity = 1;
+  return scene;
+}
+Scene with_xsph(Scene scene) {
+  scene.numerics.xsph = Xsph{};
+  return scene;
+}
+Scene without_artificial(Scene scene) {
+  scene.numerics.artificial_viscosity = 0;
+  return scene;
+}
+
+ArtificialViscosity<float> artificial(const S& s) {
+  const Parameters<3>& p = s.parameters;
+  return {p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, p.eos.rest_density};
+}
+
+/// The steps of a block of 100 000 particles; `extra(s)` makes the one optional term that its scene has.
+template <class Extra> Step forces_and(Extra extra) {
+  return [=](S& s) { minimal_step(s, false, Continuity{}, PressureForce{}, artificial(s), extra(s)); };
+}
+
+std::vector<Comparison> comparisons() {
+  const Step heat = forces_and(
+      [](const S& s) { return HeatConduction<float>(s.parameters.diffusivity, s.parameters.eos.rest_density); });
+  const Step stress = forces_and([](const S& s) { return StressForce<3, float>(true, s.parameters.eos.rest_density); });
+  const Step laminar = forces_and(
+      [](const S& s) { return LaminarViscosity<float>(s.parameters.viscosity, s.parameters.eos.rest_density); });
+  const Step xsph = forces_and([](const S& s) { return XsphTerm<float>(true, s.parameters.eos.rest_density); });
+  return {
+      {"heat", with_smd(plain()), with_heat(with_smd(plain())), stress},
+      {"smd_stress", with_heat(plain()), with_smd(with_heat(plain())), heat},
+      {"laminar_viscosity", with_xsph(plain()), with_laminar(with_xsph(plain())), xsph},
+      {"xsph", with_laminar(plain()), with_xsph(with_laminar(plain())), laminar},
+      {"artificial_viscosity", without_artificial(plain()), plain(),
+       [](S& s) { minimal_step(s, false, Continuity{}, PressureForce{}); }},
+      {"contact", plain(), tank(3, 1.3),
+       [](S& s) { minimal_step(s, true, Continuity{}, PressureForce{}, artificial(s)); }},
+  };
+}
+
+void add_all() {
+  for (const Comparison& c : comparisons())
+    benchmark::RegisterBenchmark(("skip/" + c.feature).c_str(), [c](benchmark::State& bench) { compare(bench, c); })
+        ->UseManualTime()
+        ->Iterations(std::max(1LL, steps_to_time(300) / batch))
+        ->Unit(benchmark::kMillisecond);
+}
+
+void print_table() {
+  fmt::print(stderr, "\n{:22} {:>10} {:>8} {:>8}   {:>26}   {:>26}\n", "feature", "minimal ms", "off ms", "on ms",
+             "off / minimal", "on / minimal");
+  const auto text = [](const Ratio& r) { return fmt::format("{:.4f} [{:.4f}, {:.4f}]", r.median, r.low, r.high); };
+  for (const Result& r : results)
+    fmt::print(stderr, "{:22} {:10.3f} {:8.3f} {:8.3f}   {:>26}   {:>26}\n", r.feature, 1e3 * r.minimal, 1e3 * r.off,
+               1e3 * r.on, text(r.off_ratio), text(r.on_ratio));
+}
+
+}  // namespace
+}  // namespace molten::bench
+
+int main(int argc, char** argv) {
+  const int code = molten::bench::run_program(argc, argv, molten::bench::add_all);
+  if (!molten::bench::results.empty()) molten::bench::print_table();
+  return code;
+}
