@@ -60,6 +60,7 @@ template <int Dim, class Real> struct MinimalFinish {
 };
 
 template <int Dim, class Real, class... Terms> void minimal_rates(State<Dim, Real>& s, const Terms&... terms) {
+  const auto scope = s.timer.scope(s.features.heat ? "forces and heat" : "forces");
   const Parameters<Dim>& p = s.parameters;
   std::vector<Extremes> extremes(s.neighbours.chunks().size());
   const MinimalFinish<Dim, Real> finish{s, extremes};
@@ -78,6 +79,7 @@ template <int Dim, class Real, class... Terms> void minimal_rates(State<Dim, Rea
 
 /// Leap-frog of position, velocity and compression (core/integrate.cpp's head), nothing else.
 template <int Dim, class Real> void minimal_integrate(State<Dim, Real>& s) {
+  const auto scope = s.timer.scope("integrate");
   Particles<Dim, Real>& p = s.particles;
   const double dt = s.clock.dt, previous_dt = s.clock.previous_dt, kick = (previous_dt + dt) / 2;
   const double stretch = previous_dt > 0 ? dt / previous_dt : 0;
