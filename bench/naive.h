@@ -137,8 +137,8 @@ struct Counted {
   friend Counted reciprocal(Counted) { return one_more(); }
 };
 
-/// Of the Wendland kernel's slope alone, where no term uses its value: 1 − q/2, the maximum with 0, the third power.
-constexpr std::int64_t slope_operations = 5;
+/// Of the Wendland kernel's slope alone, where no term uses its value: the minimum with 0, the third power.
+constexpr std::int64_t slope_operations = 3;
 
 /// Operations a directed pair: distance, Wendland kernel, and the terms that are on; what depends on i alone included.
 template <int Dim, class... Terms> std::int64_t operations_a_pair(const Terms&... terms) {
@@ -152,9 +152,9 @@ template <int Dim, class... Terms> std::int64_t operations_a_pair(const Terms&..
   const T root = T::one_more();
   const T q = root * T(1);
   const std::int64_t before_kernel = T::operations;
-  const ShapeAndSlope<T> shape = wendland_shape(q);
+  const Kernel<KernelChoice::wendland_c2, double> wendland(KernelKind::wendland_c2, Dim, 1, 1);
+  const ShapeAndSlope<T> kernel = wendland.at(q);
   if (!contains<XsphVelocity, SumsOf<Terms...>>) T::operations = before_kernel + slope_operations;
-  const ShapeAndSlope<T> kernel{shape.w, T(1) * shape.slope};
   PlainOut<SumsOf<Terms...>, Dim, T> out(kernel, ij.x);
   const auto add = [&](const auto& term) {
     if (term.on) term(ij, i, j, out);
