@@ -16,6 +16,8 @@ struct Features {
   bool laminar = false;  // constant viscosity
   bool artificial_viscosity = false;
   bool xsph = false;
+  bool gradient_correction = false;
+  bool shifting = false;
   bool contact = false;  // walls
   IntegratorKind integrator = IntegratorKind::leap_frog;
 

@@ -62,10 +62,15 @@ MOLTEN_FIELD(Stress, StepTensor, stress, "Pa m6/kg2", "viscous stress / density^
 MOLTEN_FIELD(Acceleration, StepVector, acceleration, "m/s2", "acceleration");
 MOLTEN_FIELD(CompressionRate, StepScalar, compression_rate, "1/s", "rate of compression");
 MOLTEN_FIELD(TemperatureRate, StepScalar, temperature_rate, "K/s", "rate of temperature");
+MOLTEN_FIELD(Correction, StepTensor, correction, "1", "kernel-gradient correction L");
+MOLTEN_FIELD(LaplacianCorrection, StepScalar, laplacian_correction, "1", "factor that makes Laplacians whole");
+MOLTEN_FIELD(ShiftVelocity, StepVector, shift_velocity, "m/s", "velocity of the particle less that of the fluid");
 MOLTEN_FIELD(XsphVelocity, StepVector, xsph_velocity, "m/s", "XSPH correction of the velocity, before its factor");
 
 // Sums that a pass uses up itself; never a column.
 MOLTEN_FIELD(StrainRate, StepTensor, strain_rate, "1/s", "rate of strain, grad v + its transpose");
+MOLTEN_FIELD(Moment, StepTensor, moment, "kg/m3", "sum of m_j grad W times x_ij, for the correction");
+MOLTEN_FIELD(CrowdingGradient, StepVector, crowding_gradient, "kg/m4", "sum of m_j grad W, for shifting");
 MOLTEN_FIELD(KernelSum, StepScalar, kernel_sum, "1", "sum of m W");
 
 #undef MOLTEN_FIELD
@@ -76,7 +81,7 @@ template <class... F> struct FieldList { static constexpr int size = sizeof...(F
 using AllFields =
     FieldList<Id, Position, Velocity, Compression, Temperature, HalfVelocity, HalfCompression, PreviousCompressionRate,
               OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress, Acceleration,
-              CompressionRate, TemperatureRate, XsphVelocity>;
+              CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

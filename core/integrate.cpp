@@ -40,7 +40,8 @@ template <int Dim, class Real> class Integrator {
  private:
   /// No particle gets further from where it was sorted than this (m).
   double longest_way() const {
-    const double fastest = std::sqrt(s_.extremes.speed2) + dt_ * std::sqrt(s_.extremes.acceleration2) +
+    const double flow = std::sqrt(s_.extremes.speed2);
+    const double fastest = (s_.features.shifting ? 1.5 : 1) * flow + dt_ * std::sqrt(s_.extremes.acceleration2) +
                            std::abs(s_.parameters.xsph) * std::sqrt(s_.extremes.xsph2);
     return s_.neighbours.displacement() + 2 * fastest * dt_;
   }
@@ -52,6 +53,7 @@ template <int Dim, class Real> class Integrator {
       m.position[d] = position_[d][slot];
       m.velocity[d] = v[d][slot] + kick_ * acceleration_[d][slot];
       m.rate[d] = m.velocity[d];
+      if (s_.features.shifting) m.rate[d] += shift_velocity_[d][slot];
       if (!s_.features.xsph) continue;
       const double correction = s_.parameters.xsph * xsph_[d][slot];
       m.rate[d] += correction;
@@ -105,6 +107,7 @@ template <int Dim, class Real> class Integrator {
   Column<HalfVelocity, Dim, Real> half_velocity_ = p_[half_velocity];
   Column<Acceleration, Dim, Real> acceleration_ = p_[acceleration];
   Column<XsphVelocity, Dim, Real> xsph_ = p_[xsph_velocity];
+  Column<ShiftVelocity, Dim, Real> shift_velocity_ = p_[shift_velocity];
   Real* compression_ = p_[compression][0];
   Real* half_compression_ = p_[half_compression][0];
   Real* previous_rate_ = p_[previous_compression_rate][0];

@@ -71,6 +71,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   }
   p.artificial_viscosity = n.artificial_viscosity;
   if (n.xsph) p.xsph = n.xsph->epsilon, p.xsph_form = n.xsph->form;
+  if (n.shifting) p.shifting = n.shifting->strength;
   p.courant_sound = n.courant_sound;
   p.courant_viscous = n.courant_viscous;
   p.courant_force = n.courant_force;

@@ -126,6 +126,10 @@ struct Xsph {
   double epsilon = 0.5;
 };
 
+struct Shifting {
+  double strength = 10;  // C of δv = −C U h Σ V ∇W
+};
+
 struct Numerics {
   std::string preset = "molten";
   Precision precision = Precision::single;
@@ -139,6 +143,8 @@ struct Numerics {
   std::optional<double> sound_speed;  // m/s; default 10 × the largest speed expected
   double artificial_viscosity = 0.1;  // α; 0: no term
   std::optional<Xsph> xsph;
+  bool gradient_correction = false;
+  std::optional<Shifting> shifting;  // needs gradient_correction
   double courant_sound = 0.2, courant_viscous = 0.1, courant_force = 0.25, courant_conduction = 0.4;
   std::optional<double> fixed_dt;  // s; overrides the adaptive step
 };

@@ -11,6 +11,7 @@ namespace molten {
 
 template <int Dim, class Real> void step(State<Dim, Real>& s) {
   if (s.neighbours.is_due() || s.parameters.sort_each_step) sort_and_list(s);
+  if (s.features.gradient_correction) find_corrections(s);
   if (s.features.stress) find_viscosity(s);
   find_rates(s);
   require_sane(s);

@@ -14,6 +14,9 @@ template <int Dim, class Real> void step(State<Dim, Real>& s);
 template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s);
 template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s);
 
+/// The kernel-gradient correction and the velocity of shifting. Only where the scene asks for corrected gradients.
+template <int Dim, class Real> void find_corrections(State<Dim, Real>& s);
+
 /// Strain rate → viscosity and stress ([P] alg. 3, lines 3-6). Only where the viscosity varies.
 template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s);
 

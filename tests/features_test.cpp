@@ -99,6 +99,15 @@ TEST(Features, XsphAddsItsColumn) {
   expect_adds([](Scene& s) { s.numerics.xsph = Xsph{Xsph::Form::position, 0}; }, {});
 }
 
+TEST(Features, CorrectedGradientsAddTheirPassAndShiftingItsColumn) {
+  const auto corrected = [](Scene& s) { s.numerics.gradient_correction = true; };
+  expect_adds(corrected, {{"correction"}, {}, {"corrections"}});
+  expect_adds([&](Scene& s) { corrected(s), s.fluid.rheology.viscosity = 1; },
+              {{"correction", "laplacian_correction"}, {}, {"corrections"}});
+  expect_adds([&](Scene& s) { corrected(s), s.numerics.shifting = Shifting{}; },
+              {{"correction", "shift_velocity"}, {}, {"corrections"}});
+}
+
 TEST(Features, WallsAddTheirPass) {
   expect_adds([](Scene& s) { s.boundaries.emplace_back(); }, {{}, {"integrate"}, {"integrate and collide"}});
 }
@@ -145,6 +154,7 @@ TEST(Features, RefusesWhatMakesNoSense) {
         s.fluid.heat = Heat{1e-4, std::array<double, 2>{40, 60}, 20, 90};
       },
       "fluid.heat.melting_range: only model = \"smd\" melts");
+  expect_refused([](Scene& s) { s.numerics.shifting = Shifting{}; }, "numerics.shifting: needs corrected gradients");
   expect_refused(
       [](Scene& s) {
         s.periodic = {true, false, false};

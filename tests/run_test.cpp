@@ -74,7 +74,8 @@ void expect_same_run(const fs::path& a, const fs::path& b) {
 // ---- the runs -------------------------------------------------------------------------------------------------------
 
 /// Everything at once: melting SMD fluid with XSPH that meets a floor, a post and a slope.
-std::string full_scene(int dimensions, const std::string& precision, const std::string& integrator) {
+std::string full_scene(int dimensions, const std::string& precision, const std::string& integrator,
+                       const std::string& more = "") {
   const bool flat = dimensions == 2;
   const std::string body = flat ? "box = { min = [0.0, 0.02], max = [0.3, 0.32] }\nspacing = 0.015"
                                 : "box = { min = [0.0, 0.0, 0.02], max = [0.2, 0.2, 0.22] }\nspacing = 0.02";
@@ -108,8 +109,9 @@ series_every = 0.003
 precision = "{}"
 integrator = "{}"
 xsph = {{ form = "position", epsilon = 0.3 }}
+{}
 )",
-                     dimensions, body, flat ? "[0.5, -0.5]" : "[0.5, 0.0, -0.5]", walls, precision, integrator);
+                     dimensions, body, flat ? "[0.5, -0.5]" : "[0.5, 0.0, -0.5]", walls, precision, integrator, more);
 }
 
 /// A scene in a folder of its own, with runs beside it.
@@ -135,13 +137,14 @@ struct Bench {
 struct Variant {
   int dimensions;
   const char *precision, *integrator;
+  const char* more = "";  // keys of [numerics]
 };
 
 class Resume : public ::testing::TestWithParam<Variant> {};
 
 TEST_P(Resume, AfterHalfTheTimeIsTheWholeRunBitForBit) {
   const Variant v = GetParam();
-  const Bench bench(full_scene(v.dimensions, v.precision, v.integrator));
+  const Bench bench(full_scene(v.dimensions, v.precision, v.integrator, v.more));
   ASSERT_EQ(bench.start("whole").code, 0);
   ASSERT_EQ(bench.start("halves", {"--set", "run.end_time=0.04"}).code, 0);
   const Outcome o = bench.resume("halves", {"--set", "run.end_time=0.08"});
@@ -152,7 +155,7 @@ TEST_P(Resume, AfterHalfTheTimeIsTheWholeRunBitForBit) {
 // An end between frames: its extra frame is dropped at the resume and the true one made.
 TEST_P(Resume, FromBetweenFramesAndWithOtherThreadsIsTheSameToo) {
   const Variant v = GetParam();
-  const Bench bench(full_scene(v.dimensions, v.precision, v.integrator));
+  const Bench bench(full_scene(v.dimensions, v.precision, v.integrator, v.more));
   ASSERT_EQ(bench.start("whole", {"--set", "run.end_time=0.045"}).code, 0);
   ASSERT_EQ(bench.start("parts", {"--set", "run.max_steps=37"}).code, 0);
   ASSERT_EQ(bench.resume("parts", {"--set", "run.max_steps=90", "--threads", "2"}).code, 0);
@@ -163,7 +166,7 @@ TEST_P(Resume, FromBetweenFramesAndWithOtherThreadsIsTheSameToo) {
 // Whatever a checkpoint forgot would have to be the same by chance at each of these steps, between sorts and at them.
 TEST_P(Resume, EveryFewStepsIsTheSameToo) {
   const Variant v = GetParam();
-  const Bench bench(full_scene(v.dimensions, v.precision, v.integrator));
+  const Bench bench(full_scene(v.dimensions, v.precision, v.integrator, v.more));
   constexpr int first = 100, every = 3, last = 340;
   ASSERT_EQ(bench.start("whole", {"--set", fmt::format("run.max_steps={}", last)}).code, 0);
   ASSERT_EQ(bench.start("pieces", {"--set", fmt::format("run.max_steps={}", first)}).code, 0);
@@ -174,11 +177,13 @@ TEST_P(Resume, EveryFewStepsIsTheSameToo) {
 
 INSTANTIATE_TEST_SUITE_P(All, Resume,
                          ::testing::Values(Variant{2, "single", "leap_frog"}, Variant{2, "double", "symplectic_euler"},
-                                           Variant{3, "single", "symplectic_euler"}, Variant{3, "double", "leap_frog"}),
+                                           Variant{3, "single", "symplectic_euler"}, Variant{3, "double", "leap_frog"},
+                                           Variant{2, "single", "leap_frog",
+                                                   "gradient_correction = true  shifting = true"}),
                          [](const auto& info) {
                            const Variant& v = info.param;
-                           std::string name = fmt::format("{}d_{}_{}", v.dimensions, v.precision, v.integrator);
-                           return name;
+                           return fmt::format("{}d_{}_{}{}", v.dimensions, v.precision, v.integrator,
+                                              *v.more ? "_more" : "");
                          });
 
 /// Stops a run with a signal once it has made a few frames.

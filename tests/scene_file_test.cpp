@@ -64,6 +64,19 @@ TEST(SceneFile, PresetThenOverridesOfItsKeys) {
   EXPECT_FALSE(parse_scene(replaced(good, "xsph = { epsilon = 0.4 }", "xsph = false"), "s.toml").numerics.xsph);
 }
 
+TEST(SceneFile, CorrectedGradientsAndShifting) {
+  const auto numerics = [](const std::string& lines) {
+    return parse_scene(replaced(good, "xsph = { epsilon = 0.4 }", lines), "s.toml").numerics;
+  };
+  EXPECT_FALSE(numerics("").gradient_correction);
+  EXPECT_FALSE(numerics("gradient_correction = true").shifting);
+  EXPECT_EQ(numerics("gradient_correction = true\nshifting = true").shifting->strength, Shifting{}.strength);
+  EXPECT_EQ(numerics("gradient_correction = true\nshifting = { strength = 3 }").shifting->strength, 3);
+  const std::string internal = replaced(flat, "[run]", "[numerics]\npreset = \"internal\"\nshifting = false\n[run]");
+  EXPECT_TRUE(parse_scene(internal, "s.toml").numerics.gradient_correction);
+  EXPECT_FALSE(parse_scene(internal, "s.toml").numerics.shifting);
+}
+
 TEST(SceneFile, DesignExampleParsesAsPrinted) {
   const Scene scene = parse_scene(design, "s.toml");
   EXPECT_EQ(scene.title, "Bunny melts from the ears down");

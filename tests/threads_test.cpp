@@ -61,6 +61,13 @@ Scene melting_block(int dim) {
   return scene;
 }
 
+Scene shifted_flow(int dim) {
+  Scene scene = melting_block(dim);
+  scene.numerics.gradient_correction = true;
+  scene.numerics.shifting = Shifting{};
+  return scene;
+}
+
 template <int Dim, class Real> State<Dim, Real> start_run(const Scene& scene) {
   const double spacing = 0.02;
   Start start = start_of(scene, cube<Dim>(Dim == 2 ? 40 : 13, spacing, 0.1), spacing);
@@ -99,6 +106,10 @@ TYPED_TEST(ThreadsOf, DamBreakOf50Steps) {
 
 TYPED_TEST(ThreadsOf, MeltingBlockOf50Steps) {
   expect_same_bits<TypeParam::dim, typename TypeParam::Real>(melting_block(TypeParam::dim), 50);
+}
+
+TYPED_TEST(ThreadsOf, ShiftedFlowOf30Steps) {
+  expect_same_bits<TypeParam::dim, typename TypeParam::Real>(shifted_flow(TypeParam::dim), 30);
 }
 
 TYPED_TEST(ThreadsOf, TheBitsDoChangeWithTheState) {

@@ -1,4 +1,5 @@
-// Named sets of numerics: "molten" (the best measured) and the sources' own, for replication.
+// Named sets of numerics: "molten" (the best measured), "internal" (the same for flows without
+// free surfaces) and the sources' own, for replication.
 #pragma once
 
 #include <optional>

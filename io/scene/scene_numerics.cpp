@@ -6,18 +6,32 @@
 namespace molten {
 namespace {
 
-const TomlReader::Keys numerics_keys = {
-    "preset",     "precision",      "resort", "kernel",      "smoothing_ratio",      "skin",
-    "integrator", "state_equation", "gamma",  "sound_speed", "artificial_viscosity", "xsph",
-    "courant",    "fixed_dt"};
+const TomlReader::Keys numerics_keys = {"preset",
+                                        "precision",
+                                        "resort",
+                                        "kernel",
+                                        "smoothing_ratio",
+                                        "skin",
+                                        "integrator",
+                                        "state_equation",
+                                        "gamma",
+                                        "sound_speed",
+                                        "artificial_viscosity",
+                                        "xsph",
+                                        "courant",
+                                        "fixed_dt",
+                                        "gradient_correction",
+                                        "shifting"};
 
 Numerics read_preset(const TomlReader& keys) {
   std::string name = "molten";
-  keys.choice<std::string>("preset", name,
-                           {{"molten", "molten"}, {"paiva", "paiva"}, {"queiroz", "queiroz"}, {"dias", "dias"}});
+  keys.choice<std::string>(
+      "preset", name,
+      {{"molten", "molten"}, {"internal", "internal"}, {"paiva", "paiva"}, {"queiroz", "queiroz"}, {"dias", "dias"}});
   const std::optional<Numerics> preset = find_preset(name);
   if (!preset) {
-    keys.fail("preset", fmt::format("\"{}\" is not available in this version; use \"molten\" or \"paiva\"", name));
+    keys.fail("preset",
+              fmt::format("\"{}\" is not available in this version; use \"molten\", \"internal\" or \"paiva\"", name));
   }
   return *preset;
 }
@@ -56,6 +70,23 @@ void read_xsph(const TomlReader& keys, Numerics& numerics) {
   numerics.xsph = xsph;
 }
 
+void read_shifting(const TomlReader& keys, Numerics& numerics) {
+  const toml::node* node = keys.node("shifting");
+  if (node == nullptr) return;
+  if (node->is_boolean()) {
+    numerics.shifting.reset();
+    if (*node->value<bool>()) numerics.shifting.emplace();
+  } else {
+    const TomlReader table = *keys.table("shifting", {"strength"});
+    Shifting shifting = numerics.shifting.value_or(Shifting{});
+    table.number("strength", shifting.strength, Range{0, 100, false, ""});
+    numerics.shifting = shifting;
+  }
+  if (numerics.shifting && !numerics.gradient_correction) {
+    keys.fail("shifting", "needs corrected gradients; add gradient_correction = true");
+  }
+}
+
 void read_courant(const TomlReader& keys, Numerics& numerics) {
   const auto table = keys.table("courant", {"sound", "viscous", "force", "conduction"});
   if (!table) return;
@@ -81,6 +112,8 @@ Numerics read_numerics(const TomlReader& root) {
   keys->number("sound_speed", numerics.sound_speed, Range::positive("m/s"));
   keys->number("artificial_viscosity", numerics.artificial_viscosity, Range::not_negative(""));
   read_xsph(*keys, numerics);
+  keys->flag("gradient_correction", numerics.gradient_correction);
+  read_shifting(*keys, numerics);
   read_courant(*keys, numerics);
   keys->number("fixed_dt", numerics.fixed_dt, Range::positive("s"));
   return numerics;

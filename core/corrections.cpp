@@ -1,0 +1,79 @@
+// Corrected gradients and shifting: a pass of their own before the rates, and the rates with what it found.
+#include "core/particle_pass.h"
+#include "core/physics/gradient_correction.h"
+#include "core/physics/heat_conduction.h"
+#include "core/physics/laminar_viscosity.h"
+#include "core/physics/shifting.h"
+#include "core/physics/viscous_stress.h"
+#include "core/physics/xsph.h"
+#include "core/rates_pass.h"
+
+namespace molten {
+
+namespace {
+
+template <int Dim, class Real> double largest_speed(const State<Dim, Real>& s) {
+  const auto v = s.particles[velocity];
+  const double speed2 = reduce_slots(
+      s.particles.slots(), 0.0,
+      [&](std::size_t slot, double& largest) {
+        double v2 = 0;
+        for (int d = 0; d < Dim; ++d) v2 += double(v[d][slot]) * v[d][slot];
+        largest = std::max(largest, s.particles.is_padding(slot) ? 0.0 : v2);
+      },
+      [](double& a, double b) { a = std::max(a, b); });
+  return std::sqrt(speed2);
+}
+
+/// Moments → correction and shift velocity, particle by particle; `fastest` (m/s) is the largest speed.
+template <int Dim, class Real> auto correction_finish(State<Dim, Real>& s, double fastest) {
+  return PlainFinish{[&p = s.parameters, to = s.particles[correction], laplacian = s.particles[laplacian_correction][0],
+                      shift = s.particles[shift_velocity], shifting = s.features.shifting,
+                      fastest](std::size_t slot, const auto& sums) {
+    const double volumes = 1 / p.eos.rest_density;
+    SymTensor<Dim, double> m;
+    for (int k = 0; k < m.size; ++k) m[k] = -volumes * sums[moment][k];
+    const GradientCorrection<Dim> found(m);
+    for (int k = 0; k < m.size; ++k) to[k][slot] = static_cast<Real>(found.inverse[k]);
+    if (laplacian) laplacian[slot] = static_cast<Real>(found.laplacian);
+    if (!shifting) return;
+    Vec<Dim, double> way;
+    for (int d = 0; d < Dim; ++d) way[d] = volumes * sums[crowding_gradient][d];
+    const double wanted = p.shifting * p.smoothing_length * found.inner * fastest;
+    const double most = fastest / 2 / (std::sqrt(dot(way, way)) + 1e-300);
+    for (int d = 0; d < Dim; ++d) shift[d][slot] = static_cast<Real>(-std::min(wanted, most) * way[d]);
+  }};
+}
+
+}  // namespace
+
+template <int Dim, class Real> void find_corrections(State<Dim, Real>& s) {
+  const auto scope = s.timer.scope("corrections");
+  const auto finish = correction_finish(s, s.features.shifting ? largest_speed(s) : 0);
+  with_run_kernel(s, [&](const auto& kernel) {
+    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, GradientMoment{},
+                                  Crowding{s.features.shifting});
+  });
+}
+
+template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
+  const Features& f = s.features;
+  const Parameters<Dim>& p = s.parameters;
+  const double rho0 = p.eos.rest_density;
+  constexpr bool corrected = true;
+  run_rates_pass(s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
+                 ShiftTransport<Real>(f.shifting, rho0),
+                 LaminarViscosity<Real, corrected>(f.laminar ? p.viscosity : 0, rho0),
+                 StressForce<Dim, Real>(f.stress, rho0),
+                 HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0), XsphTerm<Real>(f.xsph, rho0));
+}
+
+#define MOLTEN_INSTANTIATE(Dim, Real)                \
+  template void find_corrections(State<Dim, Real>&); \
+  template void corrected_rates_pass(State<Dim, Real>&);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
+
+}  // namespace molten
