@@ -1,6 +1,7 @@
 #include "core/features.h"
 
 #include "core/error.h"
+#include "core/runge_kutta.h"
 
 namespace molten {
 
@@ -28,6 +29,24 @@ void require_sense(const Scene& scene) {
 
 }  // namespace
 
+const char* name_of(IntegratorKind kind) {
+  switch (kind) {
+    case IntegratorKind::leap_frog:
+      return "leap-frog";
+    case IntegratorKind::symplectic_euler:
+      return "symplectic-euler";
+    case IntegratorKind::explicit_euler:
+      return "explicit-euler";
+    case IntegratorKind::midpoint:
+      return "midpoint";
+    case IntegratorKind::predictor_corrector:
+      return "predictor-corrector";
+    case IntegratorKind::runge_kutta_4:
+      return "runge-kutta-4";
+  }
+  return "";
+}
+
 Features features_of(const Scene& scene) {
   require_sense(scene);
   Features f;
@@ -43,11 +62,19 @@ Features features_of(const Scene& scene) {
   return f;
 }
 
+int Features::stages() const { return tableau_of(integrator).stages; }
+
 FieldSet Features::columns() const {
-  FieldSet s = field_set(FieldList<Id, Position, LocalPosition, Velocity, Compression, PressureTerm, Acceleration,
-                                   CompressionRate, PreviousCompressionRate>{});
-  if (integrator == IntegratorKind::leap_frog) s |= field_set(FieldList<HalfVelocity, HalfCompression>{});
-  if (integrator == IntegratorKind::symplectic_euler) s |= field_set(FieldList<OlderCompressionRate>{});
+  FieldSet s = field_set(
+      FieldList<Id, Position, LocalPosition, Velocity, Compression, PressureTerm, Acceleration, CompressionRate>{});
+  if (integrator == IntegratorKind::leap_frog)
+    s |= field_set(FieldList<HalfVelocity, HalfCompression, PreviousCompressionRate>{});
+  if (integrator == IntegratorKind::symplectic_euler)
+    s |= field_set(FieldList<PreviousCompressionRate, OlderCompressionRate>{});
+  if (stages() > 1) s |= field_set(FieldList<BasePosition, BaseVelocity, BaseCompression>{});
+  if (stages() > 1 && heat) s |= field_set(FieldList<BaseTemperature>{});
+  if (stages() > 2) s |= field_set(FieldList<PositionSlope, VelocitySlope, CompressionSlope>{});
+  if (stages() > 2 && heat) s |= field_set(FieldList<TemperatureSlope>{});
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
   if (stress) s |= field_set(FieldList<Viscosity, Stress>{});
   if (xsph) s |= field_set(FieldList<XsphVelocity>{});
@@ -76,7 +103,7 @@ std::vector<std::string> Features::names() const {
   if (gradient_correction) n.push_back("gradient-correction");
   if (shifting) n.push_back("shifting");
   if (contact) n.push_back("contact");
-  n.push_back(integrator == IntegratorKind::leap_frog ? "leap-frog" : "symplectic-euler");
+  n.push_back(name_of(integrator));
   return n;
 }
 

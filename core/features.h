@@ -25,12 +25,19 @@ struct Features {
   /// serves.
   bool only_basic_forces() const { return !heat && !stress && !laminar && !xsph; }
 
+  /// How often a step finds rates: once, or once a stage of a Runge-Kutta method.
+  int stages() const;
+  /// The first stage of a step takes the rates of the last one of the step before.
+  bool reuses_rates() const { return integrator == IntegratorKind::predictor_corrector; }
+
   FieldSet columns() const;
   /// The passes of one step in their order.
   std::vector<std::string> passes() const;
   /// One word a feature, for `check` and the manifest.
   std::vector<std::string> names() const;
 };
+
+const char* name_of(IntegratorKind kind);
 
 /// Throws Error(usage) with the reason for combinations that make no sense.
 Features features_of(const Scene& scene);

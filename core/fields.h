@@ -50,6 +50,14 @@ MOLTEN_FIELD(Temperature, ExactScalar, temperature, "degrees", "temperature");
 MOLTEN_FIELD(HalfVelocity, VectorField, half_velocity, "m/s", "leap-frog velocity, half a step behind");
 MOLTEN_FIELD(HalfCompression, ScalarField, half_compression, "1", "leap-frog compression, half a step behind");
 MOLTEN_FIELD(PreviousCompressionRate, ScalarField, previous_compression_rate, "1/s", "compression rate one step ago");
+MOLTEN_FIELD(BasePosition, ExactVector, base_position, "m", "position at the start of the step");
+MOLTEN_FIELD(BaseVelocity, VectorField, base_velocity, "m/s", "velocity at the start of the step");
+MOLTEN_FIELD(BaseCompression, ScalarField, base_compression, "1", "compression at the start of the step");
+MOLTEN_FIELD(BaseTemperature, ExactScalar, base_temperature, "degrees", "temperature at the start of the step");
+MOLTEN_FIELD(PositionSlope, ExactVector, position_slope, "m/s", "weighted sum of the stages' rates of position");
+MOLTEN_FIELD(VelocitySlope, VectorField, velocity_slope, "m/s2", "weighted sum of the stages' accelerations");
+MOLTEN_FIELD(CompressionSlope, ScalarField, compression_slope, "1/s", "the same of the rates of compression");
+MOLTEN_FIELD(TemperatureSlope, ExactScalar, temperature_slope, "K/s", "the same of the rates of temperature");
 MOLTEN_FIELD(OlderCompressionRate, ScalarField, older_compression_rate, "1/s", "compression rate two steps ago");
 
 // What the passes compute for each other, from the above.
@@ -81,7 +89,9 @@ template <class... F> struct FieldList { static constexpr int size = sizeof...(F
 using AllFields =
     FieldList<Id, Position, Velocity, Compression, Temperature, HalfVelocity, HalfCompression, PreviousCompressionRate,
               OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress, Acceleration,
-              CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity>;
+              CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
+              BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
+              CompressionSlope, TemperatureSlope>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

@@ -8,7 +8,9 @@
 // for 0.6 ≤ β ≤ 1.
 #include <cmath>
 
+#include "core/mover.h"
 #include "core/particle_pass.h"
+#include "core/runge_kutta.h"
 #include "core/step.h"
 
 namespace molten {
@@ -23,14 +25,14 @@ template <int Dim, class Real> class Integrator {
         dt_(s.clock.dt),
         kick_(s.features.integrator == IntegratorKind::leap_frog ? (previous_dt + dt_) / 2 : dt_),
         stretch_(previous_dt > 0 ? dt_ / previous_dt : 0),
-        always_collide_(s.features.contact && longest_way() > s.parameters.spacing) {}
+        mover_(s) {}
 
   /// Moves one particle; returns the square of its displacement (m²).
   double advance(std::size_t slot) const {
     if (ids_[slot] == padding_id) return 0;
     Motion<Dim> motion = kicked(slot);
     const Point<Dim> before = motion.position;
-    const bool bounced = collide(slot, motion);
+    const bool bounced = mover_.move(slot, motion);
     store(slot, motion, bounced);
     advance_compression(slot);
     if (s_.features.heat) temperature_[slot] += dt_ * temperature_rate_[slot];
@@ -38,14 +40,6 @@ template <int Dim, class Real> class Integrator {
   }
 
  private:
-  /// No particle gets further from where it was sorted than this (m).
-  double longest_way() const {
-    const double flow = std::sqrt(s_.extremes.speed2);
-    const double fastest = (s_.features.shifting ? 1.5 : 1) * flow + dt_ * std::sqrt(s_.extremes.acceleration2) +
-                           std::abs(s_.parameters.xsph) * std::sqrt(s_.extremes.xsph2);
-    return s_.neighbours.displacement() + 2 * fastest * dt_;
-  }
-
   Motion<Dim> kicked(std::size_t slot) const {
     Motion<Dim> m;
     const auto& v = s_.features.integrator == IntegratorKind::leap_frog ? half_velocity_.c : velocity_.c;
@@ -60,12 +54,6 @@ template <int Dim, class Real> class Integrator {
       if (s_.parameters.xsph_form == Xsph::Form::velocity) m.velocity[d] += correction;
     }
     return m;
-  }
-
-  bool collide(std::size_t slot, Motion<Dim>& m) const {
-    if (always_collide_ || s_.near_wall[slot / cluster_size]) return s_.contact.move(m, dt_) > 0;
-    m.position += dt_ * m.rate;
-    return false;
   }
 
   void store(std::size_t slot, const Motion<Dim>& m, bool bounced) const {
@@ -100,7 +88,7 @@ template <int Dim, class Real> class Integrator {
   Particles<Dim, Real>& p_;
   double dt_, kick_;
   double stretch_;  // dt over the one before; 0 at the first step
-  bool always_collide_;
+  Mover<Dim, Real> mover_;
   const std::int64_t* ids_ = p_[id][0];
   Column<Position, Dim, double> position_ = p_[position];
   Column<Velocity, Dim, Real> velocity_ = p_[velocity];
@@ -141,6 +129,8 @@ template <int Dim, class Real> class Preparation {
 
 template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   const auto scope = s.timer.scope(s.features.contact ? "integrate and collide" : "integrate");
+  const IntegratorKind kind = s.features.integrator;
+  if (kind != IntegratorKind::leap_frog && kind != IntegratorKind::symplectic_euler) return finish_stages(s);
   const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
   const Preparation<Dim, Real> preparation(s);
   const double way2 = reduce_slots(

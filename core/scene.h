@@ -117,7 +117,7 @@ struct Boundary {
 
 enum class KernelKind { gaussian, quadratic, cubic_spline, wendland_c2, lucy, poly6, spiky };
 enum class StateEquation { linear, tait };
-enum class IntegratorKind { leap_frog, symplectic_euler };
+enum class IntegratorKind { leap_frog, symplectic_euler, explicit_euler, midpoint, predictor_corrector, runge_kutta_4 };
 enum class Precision { single, double_ };
 enum class Resort { when_due, each_step };
 

@@ -33,6 +33,12 @@ template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
   auto limit = static_cast<std::int64_t>(clock.limit);
   a.value("clock/limit", limit);
   clock.limit = static_cast<Limit>(limit);
+  if (features.reuses_rates()) {
+    a.value("extremes/speed2", extremes.speed2);
+    a.value("extremes/acceleration2", extremes.acceleration2);
+    a.value("extremes/kinematic_viscosity", extremes.kinematic_viscosity);
+    a.value("extremes/xsph2", extremes.xsph2);
+  }
   particles.archive(a);
   neighbours.archive(a);
   a.vector("neighbours/near_wall", near_wall);  // as of the last sort: where the particles are now tells otherwise

@@ -6,21 +6,30 @@
 #include "core/diagnostics.h"
 #include "core/error.h"
 #include "core/particle_pass.h"
+#include "core/runge_kutta.h"
 
 namespace molten {
 
 template <int Dim, class Real> void step(State<Dim, Real>& s) {
-  if (s.neighbours.is_due() || s.parameters.sort_each_step) sort_and_list(s);
-  if (s.features.gradient_correction) find_corrections(s);
-  if (s.features.stress) find_viscosity(s);
-  find_rates(s);
+  if (!s.features.reuses_rates() || s.clock.step == 0) find_all_rates(s);
   require_sane(s);
   choose_time_step(s);
+  for (int stage = 1; stage < s.features.stages(); ++stage) {
+    go_to_stage(s, stage);
+    find_all_rates(s);
+  }
   integrate_and_collide(s);
   s.clock.time = s.clock.limit == Limit::output && s.clock.time + s.clock.dt > s.clock.stop * (1 - 1e-14)
                      ? s.clock.stop
                      : s.clock.time + s.clock.dt;
   ++s.clock.step;
+}
+
+template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s) {
+  if (s.neighbours.is_due() || s.parameters.sort_each_step) sort_and_list(s);
+  if (s.features.gradient_correction) find_corrections(s);
+  if (s.features.stress) find_viscosity(s);
+  find_rates(s);
 }
 
 template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s) {
@@ -87,6 +96,7 @@ template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
 
 #define MOLTEN_INSTANTIATE(Dim, Real)                  \
   template void step(State<Dim, Real>&);               \
+  template void find_all_rates(State<Dim, Real>&);     \
   template void sort_and_list(State<Dim, Real>&);      \
   template void mark_near_wall(State<Dim, Real>&);     \
   template void require_sane(const State<Dim, Real>&); \

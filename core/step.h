@@ -8,6 +8,9 @@ namespace molten {
 /// Advances the run by one step: at most to clock.stop.
 template <int Dim, class Real> void step(State<Dim, Real>& s);
 
+/// All rates where the particles are now, sorted and listed anew if that is due.
+template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s);
+
 // ---- what a step is made of, in its order ---------------------------------------------------------------------------
 
 /// Sorts the particles and lists their neighbours anew; marks the clusters near walls.

@@ -79,6 +79,22 @@ TEST(Features, SymplecticEulerSwapsTheIntegratorsColumns) {
   EXPECT_EQ(features.names(), (Names{"symplectic-euler"}));
 }
 
+TEST(Features, RungeKuttaStagesHaveTheirColumns) {
+  const auto columns = [](IntegratorKind integrator) {
+    Scene scene = minimal();
+    scene.numerics.integrator = integrator;
+    Names names = difference(columns_of(features_of(scene)), minimal_columns);
+    EXPECT_EQ(difference(minimal_columns, columns_of(features_of(scene))),
+              (Names{"half_velocity", "half_compression", "previous_compression_rate"}));
+    return names;
+  };
+  const Names base = {"base_position", "base_velocity", "base_compression"};
+  EXPECT_EQ(columns(IntegratorKind::explicit_euler), Names{});
+  EXPECT_EQ(columns(IntegratorKind::midpoint), base);
+  EXPECT_EQ(columns(IntegratorKind::predictor_corrector), base);
+  EXPECT_EQ(columns(IntegratorKind::runge_kutta_4).size(), base.size() + 3);
+}
+
 TEST(Features, HeatAddsItsColumns) {
   expect_adds([](Scene& s) { s.fluid.heat = Heat{}; },
               {{"temperature", "local_temperature", "temperature_rate"}, {"forces"}, {"forces and heat"}});

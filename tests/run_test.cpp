@@ -175,16 +175,16 @@ TEST_P(Resume, EveryFewStepsIsTheSameToo) {
   expect_same_run(bench.run("whole"), bench.run("pieces"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Resume,
-                         ::testing::Values(Variant{2, "single", "leap_frog"}, Variant{2, "double", "symplectic_euler"},
-                                           Variant{3, "single", "symplectic_euler"}, Variant{3, "double", "leap_frog"},
-                                           Variant{2, "single", "leap_frog",
-                                                   "gradient_correction = true  shifting = true"}),
-                         [](const auto& info) {
-                           const Variant& v = info.param;
-                           return fmt::format("{}d_{}_{}{}", v.dimensions, v.precision, v.integrator,
-                                              *v.more ? "_more" : "");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    All, Resume,
+    ::testing::Values(Variant{2, "single", "leap_frog"}, Variant{2, "double", "symplectic_euler"},
+                      Variant{3, "single", "symplectic_euler"}, Variant{3, "double", "leap_frog"},
+                      Variant{2, "single", "leap_frog", "gradient_correction = true  shifting = true"},
+                      Variant{2, "double", "predictor_corrector"}, Variant{2, "single", "runge_kutta_4"}),
+    [](const auto& info) {
+      const Variant& v = info.param;
+      return fmt::format("{}d_{}_{}{}", v.dimensions, v.precision, v.integrator, *v.more ? "_more" : "");
+    });
 
 /// Stops a run with a signal once it has made a few frames.
 Outcome stop_with(int signal, const Bench& bench, const std::string& name) {

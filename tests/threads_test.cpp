@@ -112,6 +112,12 @@ TYPED_TEST(ThreadsOf, ShiftedFlowOf30Steps) {
   expect_same_bits<TypeParam::dim, typename TypeParam::Real>(shifted_flow(TypeParam::dim), 30);
 }
 
+TYPED_TEST(ThreadsOf, RungeKuttaOf10Steps) {
+  Scene scene = melting_block(TypeParam::dim);
+  scene.numerics.integrator = IntegratorKind::runge_kutta_4;
+  expect_same_bits<TypeParam::dim, typename TypeParam::Real>(scene, 10);
+}
+
 TYPED_TEST(ThreadsOf, TheBitsDoChangeWithTheState) {
   // So that the comparisons above are known to see a difference.
   constexpr int Dim = TypeParam::dim;

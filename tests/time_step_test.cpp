@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/diagnostics.h"
+#include "core/runge_kutta.h"
 #include "tests/particle_sets.h"
 
 namespace molten {
@@ -212,8 +213,56 @@ TEST(TimeStep, OrdersOfTheIntegrators) {
     return std::log2(std::abs(coarse / fine)) / 2;
   };
   EXPECT_NEAR(order(IntegratorKind::leap_frog, 1e-3), 2, 0.1);
+  EXPECT_NEAR(order(IntegratorKind::midpoint, 1e-3), 2, 0.1);
+  EXPECT_NEAR(order(IntegratorKind::predictor_corrector, 1e-3), 2, 0.1);
+  EXPECT_NEAR(order(IntegratorKind::runge_kutta_4, 4e-3), 4, 0.2);
+  EXPECT_NEAR(order(IntegratorKind::explicit_euler, 6.25e-5), 1, 0.1);
   // Its first-order part shows at smaller steps only.
   EXPECT_NEAR(order(IntegratorKind::symplectic_euler, 6.25e-5), 1, 0.2);
+}
+
+// ---- an oscillator --------------------------------------------------------------------------------------------------
+
+/// One particle on a spring of angular frequency 1 after two thirds of a period, driven step by step: distance (m) from
+/// where it should be.
+double oscillator_error(IntegratorKind integrator, int steps) {
+  Scene scene = plain_scene(2);
+  scene.numerics.integrator = integrator;
+  scene.domain = Box{{-9, -9, 0}, {9, 9, 0}};
+  auto s = state_of<2, double>(scene, {{1, 0, 0}}, spacing);
+  const auto pull = [&] {
+    if (s.neighbours.is_due()) sort_and_list(s);
+    for (int d = 0; d < 2; ++d) s.particles[acceleration][d][0] = -s.particles[position][d][0];
+  };
+  const double time = 2 * std::numbers::pi * 2 / 3;
+  for (; s.clock.step < steps; ++s.clock.step) {
+    if (!s.features.reuses_rates() || s.clock.step == 0) pull();
+    s.clock.previous_dt = s.clock.dt;
+    s.clock.dt = time / steps;
+    for (int stage = 1; stage < s.features.stages(); ++stage) go_to_stage(s, stage), pull();
+    integrate_and_collide(s);
+  }
+  return std::abs(s.particles[position][0][0] - std::cos(time));
+}
+
+TEST(TimeStep, OrdersOfTheIntegratorsOnAnOscillator) {
+  const std::pair<IntegratorKind, int> orders[] = {
+      {IntegratorKind::explicit_euler, 1}, {IntegratorKind::symplectic_euler, 1},
+      {IntegratorKind::midpoint, 2},       {IntegratorKind::leap_frog, 2},
+      {IntegratorKind::runge_kutta_4, 4},  {IntegratorKind::predictor_corrector, 2}};
+  for (const auto& [integrator, order] : orders) {
+    const double coarse = oscillator_error(integrator, 400), fine = oscillator_error(integrator, 800);
+    EXPECT_NEAR(std::log2(coarse / fine), order, 0.03) << name_of(integrator);
+  }
+}
+
+TEST(TimeStep, RungeKuttaMethodsFallOnTheParabola) {
+  for (const auto integrator :
+       {IntegratorKind::midpoint, IntegratorKind::predictor_corrector, IntegratorKind::runge_kutta_4}) {
+    auto s = falling<double>(integrator, 0.01);
+    for (int k = 0; k < 100; ++k) step(s);
+    EXPECT_NEAR(height_error(s), 0, 1e-12) << name_of(integrator);
+  }
 }
 
 // ---- a standing wave ------------------------------------------------------------------------------------------------

@@ -48,9 +48,13 @@ void read_choices(const TomlReader& keys, Numerics& numerics) {
                            {"lucy", KernelKind::lucy},
                            {"poly6", KernelKind::poly6},
                            {"spiky", KernelKind::spiky}});
-  keys.choice<IntegratorKind>(
-      "integrator", numerics.integrator,
-      {{"leap_frog", IntegratorKind::leap_frog}, {"symplectic_euler", IntegratorKind::symplectic_euler}});
+  keys.choice<IntegratorKind>("integrator", numerics.integrator,
+                              {{"leap_frog", IntegratorKind::leap_frog},
+                               {"symplectic_euler", IntegratorKind::symplectic_euler},
+                               {"explicit_euler", IntegratorKind::explicit_euler},
+                               {"midpoint", IntegratorKind::midpoint},
+                               {"predictor_corrector", IntegratorKind::predictor_corrector},
+                               {"runge_kutta_4", IntegratorKind::runge_kutta_4}});
   keys.choice<StateEquation>("state_equation", numerics.state_equation,
                              {{"linear", StateEquation::linear}, {"tait", StateEquation::tait}});
 }
