@@ -20,6 +20,8 @@ void require_sense(const Scene& scene) {
            "fluid.rheology.jump_number: two values need [fluid.heat] with melting_range; give one value or add them");
   if (melts && r.model != Rheology::Model::smd)
     refuse(scene, "fluid.heat.melting_range: only model = \"smd\" melts; choose it or remove the range");
+  if (scene.numerics.density_filter && scene.numerics.density == DensityForm::summation)
+    refuse(scene, "numerics.density_filter: a density by summation needs no filter; leave one of the two out");
   if (scene.numerics.shifting && !scene.numerics.gradient_correction)
     refuse(scene, "numerics.shifting: needs corrected gradients; add gradient_correction = true to [numerics]");
   for (int d = 0; d < scene.dimensions; ++d)
@@ -55,6 +57,8 @@ Features features_of(const Scene& scene) {
   f.laminar = !f.stress && scene.fluid.rheology.viscosity > 0;
   f.artificial_viscosity = scene.numerics.artificial_viscosity > 0;
   f.xsph = scene.numerics.xsph && scene.numerics.xsph->epsilon > 0;
+  f.density_sum = scene.numerics.density == DensityForm::summation;
+  f.density_filter = scene.numerics.density_filter.has_value();
   f.gradient_correction = scene.numerics.gradient_correction;
   f.shifting = scene.numerics.shifting.has_value();
   f.contact = !scene.boundaries.empty();
@@ -78,6 +82,7 @@ FieldSet Features::columns() const {
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
   if (stress) s |= field_set(FieldList<Viscosity, Stress>{});
   if (xsph) s |= field_set(FieldList<XsphVelocity>{});
+  if (density_filter) s |= field_set(FieldList<FilteredCompression>{});
   if (gradient_correction) s |= field_set(FieldList<Correction>{});
   if (gradient_correction && (heat || laminar)) s |= field_set(FieldList<LaplacianCorrection>{});
   if (shifting) s |= field_set(FieldList<ShiftVelocity>{});
@@ -86,6 +91,8 @@ FieldSet Features::columns() const {
 
 std::vector<std::string> Features::passes() const {
   std::vector<std::string> p;
+  if (density_filter) p.push_back("density filter");
+  if (density_sum) p.push_back("density");
   if (gradient_correction) p.push_back("corrections");
   if (stress) p.push_back("viscosity");
   p.push_back(heat ? "forces and heat" : "forces");
@@ -100,6 +107,8 @@ std::vector<std::string> Features::names() const {
   if (laminar) n.push_back("laminar-viscosity");
   if (artificial_viscosity) n.push_back("artificial-viscosity");
   if (xsph) n.push_back("xsph");
+  if (density_sum) n.push_back("density-summation");
+  if (density_filter) n.push_back("density-filter");
   if (gradient_correction) n.push_back("gradient-correction");
   if (shifting) n.push_back("shifting");
   if (contact) n.push_back("contact");

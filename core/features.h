@@ -16,6 +16,8 @@ struct Features {
   bool laminar = false;  // constant viscosity
   bool artificial_viscosity = false;
   bool xsph = false;
+  bool density_sum = false;     // density by summation
+  bool density_filter = false;  // every so many steps
   bool gradient_correction = false;
   bool shifting = false;
   bool contact = false;  // walls

@@ -70,6 +70,7 @@ MOLTEN_FIELD(Stress, StepTensor, stress, "Pa m6/kg2", "viscous stress / density^
 MOLTEN_FIELD(Acceleration, StepVector, acceleration, "m/s2", "acceleration");
 MOLTEN_FIELD(CompressionRate, StepScalar, compression_rate, "1/s", "rate of compression");
 MOLTEN_FIELD(TemperatureRate, StepScalar, temperature_rate, "K/s", "rate of temperature");
+MOLTEN_FIELD(FilteredCompression, StepScalar, filtered_compression, "1", "compression after the density filter");
 MOLTEN_FIELD(Correction, StepTensor, correction, "1", "kernel-gradient correction L");
 MOLTEN_FIELD(LaplacianCorrection, StepScalar, laplacian_correction, "1", "factor that makes Laplacians whole");
 MOLTEN_FIELD(ShiftVelocity, StepVector, shift_velocity, "m/s", "velocity of the particle less that of the fluid");
@@ -79,7 +80,11 @@ MOLTEN_FIELD(XsphVelocity, StepVector, xsph_velocity, "m/s", "XSPH correction of
 MOLTEN_FIELD(StrainRate, StepTensor, strain_rate, "1/s", "rate of strain, grad v + its transpose");
 MOLTEN_FIELD(Moment, StepTensor, moment, "kg/m3", "sum of m_j grad W times x_ij, for the correction");
 MOLTEN_FIELD(CrowdingGradient, StepVector, crowding_gradient, "kg/m4", "sum of m_j grad W, for shifting");
-MOLTEN_FIELD(KernelSum, StepScalar, kernel_sum, "1", "sum of m W");
+MOLTEN_FIELD(KernelSum, StepScalar, kernel_sum, "kg/m3", "sum of m W, with weights");
+MOLTEN_FIELD(KernelMean, StepScalar, kernel_mean, "kg/m3", "the same times the compression");
+MOLTEN_FIELD(KernelMoment, StepVector, kernel_moment, "kg/m2", "the same sum times x_ij");
+MOLTEN_FIELD(KernelMomentOfMean, StepVector, kernel_moment_of_mean, "kg/m2", "the same times compression and x_ij");
+MOLTEN_FIELD(KernelSpread, StepTensor, kernel_spread, "kg/m", "the same times x_ij x_ij");
 
 #undef MOLTEN_FIELD
 
@@ -91,7 +96,7 @@ using AllFields =
               OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress, Acceleration,
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
-              CompressionSlope, TemperatureSlope>;
+              CompressionSlope, TemperatureSlope, FilteredCompression>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

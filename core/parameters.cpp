@@ -57,6 +57,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.kernel = n.kernel;
   p.eos = {n.state_equation, scene.fluid.density, n.sound_speed.value_or(default_sound_speed(scene, start, extent)),
            n.gamma};
+  if (n.state_equation == StateEquation::ideal_gas) p.eos.sound_speed = std::sqrt(n.stiffness);
   const Rheology& r = scene.fluid.rheology;
   p.viscosity = r.viscosity;
   if (r.model == Rheology::Model::smd) p.smd = Smd(r.flow_index, r.yield_stress, r.consistency, r.jump_number);
@@ -71,6 +72,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   }
   p.artificial_viscosity = n.artificial_viscosity;
   if (n.xsph) p.xsph = n.xsph->epsilon, p.xsph_form = n.xsph->form;
+  if (n.density_filter) p.density_filter = *n.density_filter;
   if (n.shifting) p.shifting = n.shifting->strength;
   p.courant_sound = n.courant_sound;
   p.courant_viscous = n.courant_viscous;

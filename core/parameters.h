@@ -26,6 +26,7 @@ template <int Dim> struct Parameters {
   double xsph = 0;                                    // ε
   Xsph::Form xsph_form = Xsph::Form::position;
   double shifting = 0;  // C
+  DensityFilter density_filter;
   double courant_sound = 0, courant_viscous = 0, courant_force = 0, courant_conduction = 0;
   std::optional<double> fixed_dt;  // s
   bool sort_each_step = false;

@@ -34,7 +34,7 @@ template <int Dim, class Real> struct RatesFinish {
     const Real* viscosities = p[viscosity][0];
     const Real* compressions = p[compression][0];
     Vec<Dim, Real> gravity = in_real<Dim, Real>(s.parameters.gravity);
-    Real inverse_rest_density = static_cast<Real>(1 / s.parameters.eos.rest_density);
+    Real inverse_rest_density = s.features.density_sum ? Real(0) : static_cast<Real>(1 / s.parameters.eos.rest_density);
 
     template <class Sums> void operator()(std::size_t slot, const Sums& sums) {
       using L = std::decay_t<decltype(sums[compression_rate])>;

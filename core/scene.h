@@ -116,7 +116,8 @@ struct Boundary {
 // ---- numerics ---------------------------------------------------------------------------------------------------
 
 enum class KernelKind { gaussian, quadratic, cubic_spline, wendland_c2, lucy, poly6, spiky };
-enum class StateEquation { linear, tait };
+enum class StateEquation { linear, tait, ideal_gas };
+enum class DensityForm { continuity, summation };
 enum class IntegratorKind { leap_frog, symplectic_euler, explicit_euler, midpoint, predictor_corrector, runge_kutta_4 };
 enum class Precision { single, double_ };
 enum class Resort { when_due, each_step };
@@ -128,6 +129,11 @@ struct Xsph {
 
 struct Shifting {
   double strength = 10;  // C of δv = −C U h Σ V ∇W
+};
+
+struct DensityFilter {
+  enum class Kind { shepard, mls } kind = Kind::shepard;
+  long long every = 30;  // steps
 };
 
 struct Numerics {
@@ -143,6 +149,9 @@ struct Numerics {
   std::optional<double> sound_speed;  // m/s; default 10 × the largest speed expected
   double artificial_viscosity = 0.1;  // α; 0: no term
   std::optional<Xsph> xsph;
+  double stiffness = 0;  // k of the ideal gas, m²/s²
+  DensityForm density = DensityForm::continuity;
+  std::optional<DensityFilter> density_filter;
   bool gradient_correction = false;
   std::optional<Shifting> shifting;  // needs gradient_correction
   double courant_sound = 0.2, courant_viscous = 0.1, courant_force = 0.25, courant_conduction = 0.4;

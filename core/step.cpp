@@ -10,8 +10,16 @@
 
 namespace molten {
 
+namespace {
+
+bool is_multiple(std::int64_t step, std::int64_t every) { return step > 0 && step % every == 0; }
+
+}  // namespace
+
 template <int Dim, class Real> void step(State<Dim, Real>& s) {
-  if (!s.features.reuses_rates() || s.clock.step == 0) find_all_rates(s);
+  const bool filter = s.features.density_filter && is_multiple(s.clock.step, s.parameters.density_filter.every);
+  if (filter) filter_density(s);
+  if (!s.features.reuses_rates() || s.clock.step == 0 || filter) find_all_rates(s);
   require_sane(s);
   choose_time_step(s);
   for (int stage = 1; stage < s.features.stages(); ++stage) {
@@ -25,8 +33,13 @@ template <int Dim, class Real> void step(State<Dim, Real>& s) {
   ++s.clock.step;
 }
 
-template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s) {
+template <int Dim, class Real> void list_if_due(State<Dim, Real>& s) {
   if (s.neighbours.is_due() || s.parameters.sort_each_step) sort_and_list(s);
+}
+
+template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s) {
+  list_if_due(s);
+  if (s.features.density_sum) sum_density(s);
   if (s.features.gradient_correction) find_corrections(s);
   if (s.features.stress) find_viscosity(s);
   find_rates(s);
@@ -96,6 +109,7 @@ template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
 
 #define MOLTEN_INSTANTIATE(Dim, Real)                  \
   template void step(State<Dim, Real>&);               \
+  template void list_if_due(State<Dim, Real>&);        \
   template void find_all_rates(State<Dim, Real>&);     \
   template void sort_and_list(State<Dim, Real>&);      \
   template void mark_near_wall(State<Dim, Real>&);     \

@@ -13,9 +13,18 @@ template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s);
 
 // ---- what a step is made of, in its order ---------------------------------------------------------------------------
 
+/// Sorts the particles and lists their neighbours anew, if they have moved far enough since.
+template <int Dim, class Real> void list_if_due(State<Dim, Real>& s);
+
 /// Sorts the particles and lists their neighbours anew; marks the clusters near walls.
 template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s);
 template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s);
+
+/// Replaces the density by its weighted mean; every so many steps, where the scene asks for it.
+template <int Dim, class Real> void filter_density(State<Dim, Real>& s);
+
+/// Density from the particles' places, where the scene wants it so.
+template <int Dim, class Real> void sum_density(State<Dim, Real>& s);
 
 /// The kernel-gradient correction and the velocity of shifting. Only where the scene asks for corrected gradients.
 template <int Dim, class Real> void find_corrections(State<Dim, Real>& s);

@@ -124,6 +124,12 @@ TEST(Features, CorrectedGradientsAddTheirPassAndShiftingItsColumn) {
               {{"correction", "shift_velocity"}, {}, {"corrections"}});
 }
 
+TEST(Features, DensityFiltersAndSummationAddTheirPasses) {
+  expect_adds([](Scene& s) { s.numerics.density_filter = DensityFilter{}; },
+              {{"filtered_compression"}, {}, {"density filter"}});
+  expect_adds([](Scene& s) { s.numerics.density = DensityForm::summation; }, {{}, {}, {"density"}});
+}
+
 TEST(Features, WallsAddTheirPass) {
   expect_adds([](Scene& s) { s.boundaries.emplace_back(); }, {{}, {"integrate"}, {"integrate and collide"}});
 }
@@ -170,6 +176,12 @@ TEST(Features, RefusesWhatMakesNoSense) {
         s.fluid.heat = Heat{1e-4, std::array<double, 2>{40, 60}, 20, 90};
       },
       "fluid.heat.melting_range: only model = \"smd\" melts");
+  expect_refused(
+      [](Scene& s) {
+        s.numerics.density_filter = DensityFilter{};
+        s.numerics.density = DensityForm::summation;
+      },
+      "numerics.density_filter: a density by summation needs no filter");
   expect_refused([](Scene& s) { s.numerics.shifting = Shifting{}; }, "numerics.shifting: needs corrected gradients");
   expect_refused(
       [](Scene& s) {

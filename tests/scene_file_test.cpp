@@ -77,6 +77,19 @@ TEST(SceneFile, CorrectedGradientsAndShifting) {
   EXPECT_FALSE(parse_scene(internal, "s.toml").numerics.shifting);
 }
 
+TEST(SceneFile, DensityAndStateEquation) {
+  const auto numerics = [](const std::string& lines) {
+    return parse_scene(replaced(flat, "[run]", "[numerics]\n" + lines + "\n[run]"), "s.toml").numerics;
+  };
+  EXPECT_FALSE(numerics("").density_filter);
+  EXPECT_EQ(numerics("density = \"summation\"").density, DensityForm::summation);
+  EXPECT_EQ(numerics("density_filter = { kind = \"mls\", every = 20 }").density_filter->every, 20);
+  EXPECT_EQ(numerics("density_filter = { kind = \"mls\" }").density_filter->kind, DensityFilter::Kind::mls);
+  EXPECT_FALSE(numerics("density_filter = false").density_filter);
+  EXPECT_EQ(numerics("state_equation = \"ideal_gas\"\nstiffness = 3").stiffness, 3);
+  EXPECT_EQ(numerics("integrator = \"runge_kutta_4\"").integrator, IntegratorKind::runge_kutta_4);
+}
+
 TEST(SceneFile, DesignExampleParsesAsPrinted) {
   const Scene scene = parse_scene(design, "s.toml");
   EXPECT_EQ(scene.title, "Bunny melts from the ears down");

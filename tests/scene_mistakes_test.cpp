@@ -97,6 +97,13 @@ const std::vector<Mistake> mistakes = {
     {"xsph = { epsilon = 0.4 }", "shifting = true", "numerics.shifting: needs corrected gradients; add gradient_cor"},
     {"xsph = { epsilon = 0.4 }", "gradient_correction = true\nshifting = { strength = 0 }",
      "numerics.shifting.strength: 0 is out of range"},
+    {"xsph = { epsilon = 0.4 }", "density_filter = true", "numerics.density_filter: true says too little"},
+    {"xsph = { epsilon = 0.4 }", "density_filter = { every = 0 }", "numerics.density_filter.every: 0"},
+    {"xsph = { epsilon = 0.4 }", "density_filter = { every = 5 }\ndensity = \"summation\"", "has nothing to do"},
+    {"xsph = { epsilon = 0.4 }", "state_equation = \"ideal_gas\"", "numerics.stiffness: missing; give the k"},
+    {"xsph = { epsilon = 0.4 }", "state_equation = \"ideal_gas\"\nstiffness = 3\nsound_speed = 2",
+     "numerics.sound_speed: of an ideal gas is the root"},
+    {"xsph = { epsilon = 0.4 }", "stiffness = 3", "numerics.stiffness: belongs to state_equation \"ideal_gas\""},
     // choices
     {"model = \"smd\"", "model = \"smt\"", "unknown choice \"smt\"; did you mean smd?"},
     {"kernel = \"gaussian\"", "kernel = \"wendland\"", "did you mean wendland_c2?"},

@@ -27,10 +27,11 @@ struct EquationOfState {
   double sound_speed = 1;      // c, m/s
   double gamma = 7;            // Tait only
 
-  /// Pa. Linear: p = c²(ρ − ρ0) (Morris; [P]); Tait: p = c²ρ0/γ ((ρ/ρ0)^γ − 1) ([D] 4.2).
+  /// Pa. Linear: p = c²(ρ − ρ0) (Morris; [P]); ideal gas: p = k(ρ − ρ0) ([Q] 4.7), the same with c = √k; Tait: p =
+  /// c²ρ0/γ ((ρ/ρ0)^γ − 1) ([D] 4.2).
   double pressure(double compression) const {
     const double stiffness = sound_speed * sound_speed * rest_density;
-    if (kind == StateEquation::linear) return stiffness * compression;
+    if (kind != StateEquation::tait) return stiffness * compression;
     return stiffness / gamma * std::expm1(gamma * std::log1p(compression));
   }
   /// p/ρ², Pa m⁶/kg²
@@ -41,7 +42,7 @@ struct EquationOfState {
   /// The compression at which p is this (Pa), for hydrostatic starts.
   double compression(double pressure) const {
     const double stiffness = sound_speed * sound_speed * rest_density;
-    if (kind == StateEquation::linear) return pressure / stiffness;
+    if (kind != StateEquation::tait) return pressure / stiffness;
     return std::expm1(std::log1p(gamma * pressure / stiffness) / gamma);
   }
 };

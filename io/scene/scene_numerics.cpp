@@ -21,7 +21,10 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "courant",
                                         "fixed_dt",
                                         "gradient_correction",
-                                        "shifting"};
+                                        "shifting",
+                                        "density",
+                                        "density_filter",
+                                        "stiffness"};
 
 Numerics read_preset(const TomlReader& keys) {
   std::string name = "molten";
@@ -55,8 +58,11 @@ void read_choices(const TomlReader& keys, Numerics& numerics) {
                                {"midpoint", IntegratorKind::midpoint},
                                {"predictor_corrector", IntegratorKind::predictor_corrector},
                                {"runge_kutta_4", IntegratorKind::runge_kutta_4}});
-  keys.choice<StateEquation>("state_equation", numerics.state_equation,
-                             {{"linear", StateEquation::linear}, {"tait", StateEquation::tait}});
+  keys.choice<StateEquation>(
+      "state_equation", numerics.state_equation,
+      {{"linear", StateEquation::linear}, {"tait", StateEquation::tait}, {"ideal_gas", StateEquation::ideal_gas}});
+  keys.choice<DensityForm>("density", numerics.density,
+                           {{"continuity", DensityForm::continuity}, {"summation", DensityForm::summation}});
 }
 
 void read_xsph(const TomlReader& keys, Numerics& numerics) {
@@ -72,6 +78,37 @@ void read_xsph(const TomlReader& keys, Numerics& numerics) {
   table.choice<Xsph::Form>("form", xsph.form, {{"velocity", Xsph::Form::velocity}, {"position", Xsph::Form::position}});
   table.number("epsilon", xsph.epsilon, Range{0, 1, false, ""});
   numerics.xsph = xsph;
+}
+
+void read_density_filter(const TomlReader& keys, Numerics& numerics) {
+  const toml::node* node = keys.node("density_filter");
+  if (node == nullptr) return;
+  if (node->is_boolean()) {
+    if (*node->value<bool>()) keys.fail("density_filter", "true says too little; give { kind = \"mls\", every = 30 }");
+    numerics.density_filter.reset();
+    return;
+  }
+  const TomlReader table = *keys.table("density_filter", {"kind", "every"});
+  DensityFilter filter = numerics.density_filter.value_or(DensityFilter{});
+  table.choice<DensityFilter::Kind>("kind", filter.kind,
+                                    {{"shepard", DensityFilter::Kind::shepard}, {"mls", DensityFilter::Kind::mls}});
+  table.whole("every", filter.every, 1, 1000000);
+  if (numerics.density == DensityForm::summation)
+    keys.fail("density_filter", "has nothing to do for density = \"summation\"; leave one of them out");
+  numerics.density_filter = filter;
+}
+
+void read_state_equation(const TomlReader& keys, Numerics& numerics) {
+  if (numerics.state_equation != StateEquation::tait && keys.has("gamma"))
+    keys.fail("gamma", "has no effect with state_equation other than \"tait\"; leave it out");
+  keys.number("gamma", numerics.gamma, Range{1, 100, true, ""});
+  const bool gas = numerics.state_equation == StateEquation::ideal_gas;
+  if (gas && keys.has("sound_speed"))
+    keys.fail("sound_speed", "of an ideal gas is the root of stiffness; leave it out");
+  if (!gas && keys.has("stiffness")) keys.fail("stiffness", "belongs to state_equation \"ideal_gas\"; leave it out");
+  if (gas && !(numerics.stiffness > 0)) keys.require("stiffness", "give the k of p = k (rho - rho0) in m²/s²");
+  keys.number("stiffness", numerics.stiffness, Range::positive("m²/s²"));
+  keys.number("sound_speed", numerics.sound_speed, Range::positive("m/s"));
 }
 
 void read_shifting(const TomlReader& keys, Numerics& numerics) {
@@ -109,11 +146,8 @@ Numerics read_numerics(const TomlReader& root) {
   read_choices(*keys, numerics);
   keys->number("smoothing_ratio", numerics.smoothing_ratio, Range{0.5, 10, true, "spacings"});
   keys->number("skin", numerics.skin, Range{0, 10, true, "spacings"});
-  if (numerics.state_equation == StateEquation::linear && keys->has("gamma")) {
-    keys->fail("gamma", "has no effect with state_equation \"linear\"; leave it out or use \"tait\"");
-  }
-  keys->number("gamma", numerics.gamma, Range{1, 100, true, ""});
-  keys->number("sound_speed", numerics.sound_speed, Range::positive("m/s"));
+  read_state_equation(*keys, numerics);
+  read_density_filter(*keys, numerics);
   keys->number("artificial_viscosity", numerics.artificial_viscosity, Range::not_negative(""));
   read_xsph(*keys, numerics);
   keys->flag("gradient_correction", numerics.gradient_correction);
