@@ -36,12 +36,14 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
         d.kinetic_energy += m * v2 / 2;
         d.max_speed = std::max(d.max_speed, std::sqrt(v2));
         d.max_compression = std::max(d.max_compression, std::abs(double(p[compression][0][slot])));
+        if (s.features.internal_energy) d.internal_energy += m * p[internal_energy][0][slot];
         if (s.features.heat) d.heat += m * p[temperature][0][slot];
       },
       [](Diagnostics& a, const Diagnostics& b) {
         a.particles += b.particles;
         a.kinetic_energy += b.kinetic_energy;
         a.potential_energy += b.potential_energy;
+        a.internal_energy += b.internal_energy;
         a.heat += b.heat;
         for (int k = 0; k < Dim; ++k) {
           a.momentum[k] += b.momentum[k];
@@ -60,6 +62,7 @@ std::vector<std::string> available_fields(const Features& f) {
   std::vector<std::string> names{"velocity", "density", "pressure"};
   if (f.heat) names.push_back("temperature");
   if (f.stress) names.push_back("viscosity");
+  if (f.internal_energy) names.push_back("internal_energy");
   return names;
 }
 
@@ -98,6 +101,8 @@ SnapshotField read_field(const State<Dim, Real>& s, const std::string& name, std
   if (name == "pressure") scalar("Pa", "pressure", [&](auto k) { return s.parameters.eos.pressure(delta[k]); });
   if (name == "temperature")
     scalar(std::string(temperature.unit), "temperature", [&](auto k) { return p[temperature][0][k]; });
+  if (name == "internal_energy")
+    scalar(std::string(internal_energy.unit), "internal energy", [&](auto k) { return p[internal_energy][0][k]; });
   if (name == "viscosity") scalar("Pa s", "dynamic viscosity", [&](auto k) { return p[viscosity][0][k]; });
   if (name == "velocity") {
     field = {name, "m/s", "velocity", 3, std::vector<double>(3 * slots.size(), 0.0)};

@@ -14,6 +14,7 @@ namespace molten {
 struct Diagnostics {
   std::int64_t particles = 0;
   double kinetic_energy = 0, potential_energy = 0;  // J (2-D: J per m of depth); potential −m g·x
+  double internal_energy = 0;                       // J, from the start on
   double heat = 0;                                  // Σ m T, kg K
   std::array<double, 3> momentum{};                 // kg m/s
   std::array<double, 3> lower{}, upper{};           // m; extent of the particles

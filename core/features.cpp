@@ -20,6 +20,10 @@ void require_sense(const Scene& scene) {
            "fluid.rheology.jump_number: two values need [fluid.heat] with melting_range; give one value or add them");
   if (melts && r.model != Rheology::Model::smd)
     refuse(scene, "fluid.heat.melting_range: only model = \"smd\" melts; choose it or remove the range");
+  if (scene.numerics.particle_sound_speed &&
+      (scene.numerics.state_equation != StateEquation::tait || scene.numerics.gamma != 7))
+    refuse(scene,
+           "numerics.particle_sound_speed: needs state_equation \"tait\" with gamma = 7; use them or leave it out");
   if (scene.numerics.density_filter && scene.numerics.density == DensityForm::summation)
     refuse(scene, "numerics.density_filter: a density by summation needs no filter; leave one of the two out");
   if (scene.numerics.shifting && !scene.numerics.gradient_correction)
@@ -57,6 +61,10 @@ Features features_of(const Scene& scene) {
   f.laminar = !f.stress && scene.fluid.rheology.viscosity > 0;
   f.artificial_viscosity = scene.numerics.artificial_viscosity > 0;
   f.xsph = scene.numerics.xsph && scene.numerics.xsph->epsilon > 0;
+  f.particle_sound_speed = f.artificial_viscosity && scene.numerics.particle_sound_speed;
+  f.tensile_correction = scene.numerics.tensile_correction;
+  f.muller_viscosity = f.laminar && scene.numerics.muller_viscosity;
+  f.internal_energy = scene.numerics.internal_energy;
   f.density_sum = scene.numerics.density == DensityForm::summation;
   f.density_filter = scene.numerics.density_filter.has_value();
   f.gradient_correction = scene.numerics.gradient_correction;
@@ -82,6 +90,7 @@ FieldSet Features::columns() const {
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
   if (stress) s |= field_set(FieldList<Viscosity, Stress>{});
   if (xsph) s |= field_set(FieldList<XsphVelocity>{});
+  if (internal_energy) s |= field_set(FieldList<InternalEnergy, InternalEnergyRate>{});
   if (density_filter) s |= field_set(FieldList<FilteredCompression>{});
   if (gradient_correction) s |= field_set(FieldList<Correction>{});
   if (gradient_correction && (heat || laminar)) s |= field_set(FieldList<LaplacianCorrection>{});
@@ -107,6 +116,10 @@ std::vector<std::string> Features::names() const {
   if (laminar) n.push_back("laminar-viscosity");
   if (artificial_viscosity) n.push_back("artificial-viscosity");
   if (xsph) n.push_back("xsph");
+  if (particle_sound_speed) n.push_back("particle-sound-speed");
+  if (tensile_correction) n.push_back("tensile-correction");
+  if (muller_viscosity) n.push_back("muller-viscosity");
+  if (internal_energy) n.push_back("internal-energy");
   if (density_sum) n.push_back("density-summation");
   if (density_filter) n.push_back("density-filter");
   if (gradient_correction) n.push_back("gradient-correction");

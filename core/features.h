@@ -15,6 +15,10 @@ struct Features {
   bool stress = false;   // viscosity that varies: strain-rate pass and stress
   bool laminar = false;  // constant viscosity
   bool artificial_viscosity = false;
+  bool particle_sound_speed = false;
+  bool tensile_correction = false;
+  bool muller_viscosity = false;
+  bool internal_energy = false;
   bool xsph = false;
   bool density_sum = false;     // density by summation
   bool density_filter = false;  // every so many steps
@@ -31,6 +35,9 @@ struct Features {
   int stages() const;
   /// The first stage of a step takes the rates of the last one of the step before.
   bool reuses_rates() const { return integrator == IntegratorKind::predictor_corrector; }
+
+  /// Something that only the rates pass with every term has.
+  bool any_seldom() const { return particle_sound_speed || tensile_correction || muller_viscosity || internal_energy; }
 
   FieldSet columns() const;
   /// The passes of one step in their order.

@@ -70,6 +70,9 @@ MOLTEN_FIELD(Stress, StepTensor, stress, "Pa m6/kg2", "viscous stress / density^
 MOLTEN_FIELD(Acceleration, StepVector, acceleration, "m/s2", "acceleration");
 MOLTEN_FIELD(CompressionRate, StepScalar, compression_rate, "1/s", "rate of compression");
 MOLTEN_FIELD(TemperatureRate, StepScalar, temperature_rate, "K/s", "rate of temperature");
+MOLTEN_FIELD(InternalEnergy, ExactScalar, internal_energy, "J/kg",
+             "internal energy since the start; leap-frog: half a step behind");
+MOLTEN_FIELD(InternalEnergyRate, StepScalar, internal_energy_rate, "W/kg", "rate of internal energy");
 MOLTEN_FIELD(FilteredCompression, StepScalar, filtered_compression, "1", "compression after the density filter");
 MOLTEN_FIELD(Correction, StepTensor, correction, "1", "kernel-gradient correction L");
 MOLTEN_FIELD(LaplacianCorrection, StepScalar, laplacian_correction, "1", "factor that makes Laplacians whole");
@@ -96,7 +99,7 @@ using AllFields =
               OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress, Acceleration,
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
-              CompressionSlope, TemperatureSlope, FilteredCompression>;
+              CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

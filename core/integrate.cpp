@@ -35,6 +35,7 @@ template <int Dim, class Real> class Integrator {
     const bool bounced = mover_.move(slot, motion);
     store(slot, motion, bounced);
     advance_compression(slot);
+    if (s_.features.internal_energy) internal_energy_[slot] += kick_ * internal_energy_rate_[slot];
     if (s_.features.heat) temperature_[slot] += dt_ * temperature_rate_[slot];
     return (motion.position - before).squaredNorm();
   }
@@ -103,6 +104,8 @@ template <int Dim, class Real> class Integrator {
   const Real* compression_rate_ = p_[compression_rate][0];
   double* temperature_ = p_[temperature][0];
   const Real* temperature_rate_ = p_[temperature_rate][0];
+  double* internal_energy_ = p_[internal_energy][0];
+  const Real* internal_energy_rate_ = p_[internal_energy_rate][0];
 };
 
 /// What the pair passes read of one particle, from its state.

@@ -33,6 +33,7 @@ namespace molten {
 
 /// Pair quantities of N lanes.
 template <int Dim, class L> struct Pair {
+  static constexpr int dim = Dim;
   Vec<Dim, L> x;  // x_i − x_j, m
   L r2;           // |x|², m²; a particle with itself: far below any distance, above 0
 };
@@ -95,6 +96,10 @@ template <class Sums, class Radial, int Dim, class L> struct Out {
   }
   /// Adds m_j ∇W · s to a vector.
   template <class F> [[gnu::always_inline]] void along(F, const L& s) { radial[F{}][0] += s; }
+  /// Adds v as it is: for a kernel of the term's own, zero beyond the support.
+  template <class F> [[gnu::always_inline]] void plain(F, const value_t<F, Dim, L>& v) {
+    unrolled<components<F, Dim>>([&](auto k) { component(sums[F{}], k) += component(v, k); });
+  }
   /// Adds m_j W · v
   template <class F> [[gnu::always_inline]] void W(F, const value_t<F, Dim, L>& v) {
     unrolled<components<F, Dim>>([&](auto k) { component(sums[F{}], k) += kernel.w * component(v, k); });

@@ -39,6 +39,7 @@ template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s) {
 
 template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   const auto scope = s.timer.scope(s.features.heat ? "forces and heat" : "forces");
+  if (s.features.any_seldom()) return seldom_rates_pass(s);
   if (s.features.gradient_correction) return corrected_rates_pass(s);
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;

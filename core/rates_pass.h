@@ -31,6 +31,7 @@ template <int Dim, class Real> struct RatesFinish {
     Column<XsphVelocity, Dim, Real> x = p[xsph_velocity];
     Real* compression_rates = p[compression_rate][0];
     Real* temperature_rates = p[temperature_rate][0];
+    Real* energy_rates = p[internal_energy_rate][0];
     const Real* viscosities = p[viscosity][0];
     const Real* compressions = p[compression][0];
     Vec<Dim, Real> gravity = in_real<Dim, Real>(s.parameters.gravity);
@@ -53,6 +54,8 @@ template <int Dim, class Real> struct RatesFinish {
       raise(extremes.speed2, v2);
       if constexpr (requires { sums[temperature_rate]; })
         if (s.features.heat) keep_heat(slot, L(alive * sums[temperature_rate]));
+      if constexpr (requires { sums[internal_energy_rate]; })
+        if (energy_rates) store(L(alive * sums[internal_energy_rate]), energy_rates + slot);
       if constexpr (requires { sums[xsph_velocity]; })
         if (s.features.xsph) keep_xsph(slot, alive * sums[xsph_velocity]);
       if (s.features.stress) {
@@ -118,7 +121,8 @@ template <int Dim, class Real> ArtificialViscosity<Real> artificial_viscosity_of
   return {p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, p.eos.rest_density};
 }
 
-/// The rates pass of scenes with corrected gradients, in a file of its own.
+/// The rates passes in files of their own: with corrected gradients, and with what few scenes ask for.
 template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s);
+template <int Dim, class Real> void seldom_rates_pass(State<Dim, Real>& s);
 
 }  // namespace molten

@@ -67,6 +67,7 @@ template <int Dim, class Real> class Stages {
     if (p_.is_padding(slot)) return 0;
     const Quantities<Dim> before = now_.at(slot), rates = rates_at(slot);
     if (stage == 1) base_.set(slot, before);
+    add_work(slot, tableau_.b[stage - 1]);
     if (slope_.position[0]) add_to_slope(stage - 1, slot, rates);
     Quantities<Dim> after = base_.at(slot);
     after.add(tableau_.a[stage] * s_.clock.dt, rates);
@@ -80,7 +81,9 @@ template <int Dim, class Real> class Stages {
     const Quantities<Dim> before = now_.at(slot);
     Quantities<Dim> rates, after = tableau_.stages > 1 ? base_.at(slot) : before;
     if (slope_.position[0]) rates = slope_.at(slot);
-    rates.add(tableau_.b[tableau_.stages - 1], rates_at(slot));
+    const double last = tableau_.b[tableau_.stages - 1];
+    rates.add(last, rates_at(slot));
+    add_work(slot, last);
     Motion<Dim> m;
     for (int d = 0; d < Dim; ++d) {
       m.position[d] = after.position[d];
@@ -120,6 +123,11 @@ template <int Dim, class Real> class Stages {
     slope_.set(slot, sum);
   }
 
+  /// Internal energy acts on nothing, so that it needs no value at the stages.
+  void add_work(std::size_t slot, double weight) const {
+    if (s_.features.internal_energy) internal_energy_[slot] += s_.clock.dt * weight * internal_energy_rate_[slot];
+  }
+
   static double way2(const Quantities<Dim>& a, const Quantities<Dim>& b) {
     double sum = 0;
     for (int d = 0; d < Dim; ++d) sum += std::pow(a.position[d] - b.position[d], 2);
@@ -136,6 +144,8 @@ template <int Dim, class Real> class Stages {
   Column<ShiftVelocity, Dim, Real> shift_velocity_ = p_[shift_velocity];
   const Real* compression_rate_ = p_[compression_rate][0];
   const Real* temperature_rate_ = p_[temperature_rate][0];
+  double* internal_energy_ = p_[internal_energy][0];
+  const Real* internal_energy_rate_ = p_[internal_energy_rate][0];
 };
 
 /// way2_of(slot) for all particles, then what passes read of where they are.

@@ -148,6 +148,10 @@ struct Numerics {
   double gamma = 7;                   // Tait exponent
   std::optional<double> sound_speed;  // m/s; default 10 × the largest speed expected
   double artificial_viscosity = 0.1;  // α; 0: no term
+  bool particle_sound_speed = false;  // c_i in the artificial viscosity; Tait with γ = 7
+  bool tensile_correction = false;
+  bool muller_viscosity = false;  // the form of a constant viscosity; else Morris'
+  bool internal_energy = false;
   std::optional<Xsph> xsph;
   double stiffness = 0;  // k of the ideal gas, m²/s²
   DensityForm density = DensityForm::continuity;

@@ -23,7 +23,7 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "gradient_correction",
                                         "shifting",
                                         "density",
-                                        "density_filter",
+                                        "density_filter", "particle_sound_speed", "tensile_correction", "internal_energy", "viscosity_form",
                                         "stiffness"};
 
 Numerics read_preset(const TomlReader& keys) {
@@ -111,6 +111,17 @@ void read_state_equation(const TomlReader& keys, Numerics& numerics) {
   keys.number("sound_speed", numerics.sound_speed, Range::positive("m/s"));
 }
 
+void read_seldom(const TomlReader& keys, Numerics& numerics) {
+  keys.flag("particle_sound_speed", numerics.particle_sound_speed);
+  keys.flag("tensile_correction", numerics.tensile_correction);
+  keys.flag("internal_energy", numerics.internal_energy);
+  keys.choice<bool>("viscosity_form", numerics.muller_viscosity, {{"morris", false}, {"muller", true}});
+  if (numerics.particle_sound_speed &&
+      (numerics.state_equation != StateEquation::tait || numerics.gamma != 7)) {
+    keys.fail("particle_sound_speed", "is that of state_equation \"tait\" with gamma = 7; use them or leave it out");
+  }
+}
+
 void read_shifting(const TomlReader& keys, Numerics& numerics) {
   const toml::node* node = keys.node("shifting");
   if (node == nullptr) return;
@@ -149,6 +160,7 @@ Numerics read_numerics(const TomlReader& root) {
   read_state_equation(*keys, numerics);
   read_density_filter(*keys, numerics);
   keys->number("artificial_viscosity", numerics.artificial_viscosity, Range::not_negative(""));
+  read_seldom(*keys, numerics);
   read_xsph(*keys, numerics);
   keys->flag("gradient_correction", numerics.gradient_correction);
   read_shifting(*keys, numerics);

@@ -1,0 +1,59 @@
+// The rates pass of scenes that ask for what few do: the tensile correction, Müller's viscosity, the particles' own
+// sound speeds, internal energy. Everything else that a scene may have is in it as well.
+#include "core/physics/continuity.h"
+#include "core/physics/heat_conduction.h"
+#include "core/physics/laminar_viscosity.h"
+#include "core/physics/muller_viscosity.h"
+#include "core/physics/shifting.h"
+#include "core/physics/tensile_correction.h"
+#include "core/physics/viscous_stress.h"
+#include "core/physics/work.h"
+#include "core/physics/xsph.h"
+#include "core/rates_pass.h"
+
+namespace molten {
+
+namespace {
+
+/// m W(Δx), kg/m^d
+template <int Dim, class Real> double kernel_at_spacing(const Parameters<Dim>& p) {
+  return with_kernel<double>(p.kernel, Dim, p.smoothing_length, p.particle_mass,
+                             [&](const auto& kernel) { return kernel(Lanes<double, 1>(p.spacing)).w.v; });
+}
+
+template <bool corrected, int Dim, class Real, class... Terms>
+void seldom_pass(State<Dim, Real>& s, const Terms&... terms) {
+  const Features& f = s.features;
+  const Parameters<Dim>& p = s.parameters;
+  const double rho0 = p.eos.rest_density;
+  const double constant_viscosity = f.laminar ? p.viscosity : 0;
+  run_rates_pass(s,
+                 WithWork(f.internal_energy, PressureForce{},
+                          ArtificialViscosity<Real, true>(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length,
+                                                          rho0, f.particle_sound_speed),
+                          TensileCorrection<Real>(f.tensile_correction, kernel_at_spacing<Dim, Real>(p)),
+                          LaminarViscosity<Real, corrected>(f.muller_viscosity ? 0 : constant_viscosity, rho0),
+                          MullerViscosity<Dim, Real>(f.muller_viscosity ? constant_viscosity : 0, p.particle_mass, rho0,
+                                                     p.support_radius),
+                          StressForce<Dim, Real>(f.stress, rho0)),
+                 HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0), XsphTerm<Real>(f.xsph, rho0),
+                 terms...);
+}
+
+}  // namespace
+
+template <int Dim, class Real> void seldom_rates_pass(State<Dim, Real>& s) {
+  if (s.features.gradient_correction)
+    seldom_pass<true>(s, CorrectedContinuity{s.features.shifting},
+                      ShiftTransport<Real>(s.features.shifting, s.parameters.eos.rest_density));
+  else
+    seldom_pass<false>(s, Continuity{});
+}
+
+#define MOLTEN_INSTANTIATE(Dim, Real) template void seldom_rates_pass(State<Dim, Real>&);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
+
+}  // namespace molten
