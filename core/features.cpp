@@ -28,6 +28,8 @@ void require_sense(const Scene& scene) {
     refuse(scene, "numerics.density_filter: a density by summation needs no filter; leave one of the two out");
   if (scene.numerics.shifting && !scene.numerics.gradient_correction)
     refuse(scene, "numerics.shifting: needs corrected gradients; add gradient_correction = true to [numerics]");
+  if (r.thermal && !scene.fluid.heat)
+    refuse(scene, "fluid.rheology: a viscosity that varies with temperature needs [fluid.heat]; add it");
   for (int d = 0; d < scene.dimensions; ++d)
     if (scene.periodic[d] && !scene.domain)
       refuse(scene, "scene.periodic: a periodic axis needs scene.domain for its length");
@@ -57,7 +59,8 @@ Features features_of(const Scene& scene) {
   require_sense(scene);
   Features f;
   f.heat = scene.fluid.heat.has_value();
-  f.stress = scene.fluid.rheology.model == Rheology::Model::smd;
+  f.stress = !scene.fluid.rheology.constant();
+  f.smd = scene.fluid.rheology.model == Rheology::Model::smd;
   f.laminar = !f.stress && scene.fluid.rheology.viscosity > 0;
   f.artificial_viscosity = scene.numerics.artificial_viscosity > 0;
   f.xsph = scene.numerics.xsph && scene.numerics.xsph->epsilon > 0;
@@ -112,7 +115,7 @@ std::vector<std::string> Features::passes() const {
 std::vector<std::string> Features::names() const {
   std::vector<std::string> n;
   if (heat) n.push_back("heat");
-  if (stress) n.push_back("smd-viscosity");
+  if (stress) n.push_back(smd ? "smd-viscosity" : "varying-viscosity");
   if (laminar) n.push_back("laminar-viscosity");
   if (artificial_viscosity) n.push_back("artificial-viscosity");
   if (xsph) n.push_back("xsph");

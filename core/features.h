@@ -13,6 +13,7 @@ namespace molten {
 struct Features {
   bool heat = false;     // temperature and its conduction
   bool stress = false;   // viscosity that varies: strain-rate pass and stress
+  bool smd = false;      // that of de Souza Mendes and Dutra
   bool laminar = false;  // constant viscosity
   bool artificial_viscosity = false;
   bool particle_sound_speed = false;

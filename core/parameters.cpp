@@ -60,6 +60,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   if (n.state_equation == StateEquation::ideal_gas) p.eos.sound_speed = std::sqrt(n.stiffness);
   const Rheology& r = scene.fluid.rheology;
   p.viscosity = r.viscosity;
+  p.rheology = r;
   if (r.model == Rheology::Model::smd) p.smd = Smd(r.flow_index, r.yield_stress, r.consistency, r.jump_number);
   if (scene.fluid.heat) {
     p.diffusivity = scene.fluid.heat->diffusivity;

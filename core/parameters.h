@@ -7,6 +7,7 @@
 #include "core/features.h"
 #include "core/kernel.h"
 #include "core/neighbours.h"
+#include "core/physics/flow_curve.h"
 #include "core/physics/pressure.h"
 #include "core/physics/rheology.h"
 #include "core/scene.h"
@@ -21,6 +22,11 @@ template <int Dim> struct Parameters {
   EquationOfState eos;
   double viscosity = 0;  // Pa s, Newtonian
   Smd smd;
+  Rheology rheology;
+  double viscosity_at(double strain, double temperature) const {
+    return rheology.model == Rheology::Model::smd ? smd.viscosity(strain, temperature)
+                                                  : viscosity_of(rheology, strain, temperature);
+  }
   double diffusivity = 0, reference_temperature = 0;  // m²/s; T that local temperatures refer to
   double artificial_viscosity = 0;                    // α
   double xsph = 0;                                    // ε

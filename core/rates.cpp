@@ -19,7 +19,7 @@ template <int Dim, class Real> auto viscosity_finish(State<Dim, Real>& s) {
     const Real rho0 = static_cast<Real>(p.eos.rest_density);
     const SymTensor<Dim, Real> strain = (Real(1) / rho0) * sums[strain_rate];
     const double magnitude = strain_magnitude(strain);
-    const double value = p.smd.viscosity(magnitude, T ? T[slot] : 0.0);
+    const double value = p.viscosity_at(magnitude, T ? T[slot] : 0.0);
     const Real density = rho0 * (1 + delta[slot]);
     eta[slot] = static_cast<Real>(value);
     stress_of.set(slot, (static_cast<Real>(value) / (density * density)) * strain);

@@ -71,14 +71,29 @@ struct Shape {
 
 // ---- fluid ------------------------------------------------------------------------------------------------------
 
-/// Dynamic viscosity η(D, T), D = √(½ tr D²) the strain-rate magnitude.
+/// What a viscosity is multiplied with at a temperature.
+struct ThermalViscosity {
+  enum class Kind { arrhenius, vft } kind = Kind::arrhenius;
+  double activation_temperature = 0, reference_temperature = 1;  // K; exp(E/R (1/T − 1/T_r))
+  double a = 0, b = 0, c = 0;                                    // 10^(A + B/(T − C)), the scene's temperature unit
+};
+
+/// Dynamic viscosity η(D, T), D = √(½ tr D²) the strain-rate magnitude (physics/rheology.h, physics/flow_curve.h).
 struct Rheology {
-  enum class Model { newtonian, smd } model = Model::newtonian;
-  double viscosity = 0;                     // Pa s; newtonian. 0: inviscid
-  double flow_index = 0.5;                  // n; smd
+  enum class Model { newtonian, smd, power_law, bingham, herschel_bulkley, cross, carreau } model = Model::newtonian;
+  double viscosity = 0;                     // Pa s; newtonian (0: inviscid), bingham; cross, carreau: at rest
+  double flow_index = 0.5;                  // n
   std::array<double, 2> jump_number{0, 0};  // J hot, J cold ([P] 6-3: J_min, J_max); equal without heat
   double yield_stress = 1;                  // τ0, Pa
   double consistency = 1;                   // K, Pa s^n
+  double regularisation = 0;                // m, s; bingham, herschel_bulkley
+  double fast_viscosity = 0;                // η∞, Pa s; cross, carreau
+  double relaxation_time = 0;               // λ, s; cross, carreau
+  double largest_viscosity = 1e30;          // Pa s; all but smd
+  std::optional<ThermalViscosity> thermal;  // all but smd
+
+  /// The viscosity is the same everywhere and always.
+  bool constant() const { return model == Model::newtonian && !thermal; }
 };
 
 struct Heat {

@@ -6,8 +6,19 @@
 namespace molten {
 namespace {
 
-const TomlReader::Keys rheology_keys = {"model",       "viscosity",    "n", "jump_number", "yield_stress",
-                                        "consistency", "dimensionless"};
+const TomlReader::Keys rheology_keys = {"model",
+                                        "viscosity",
+                                        "n",
+                                        "jump_number",
+                                        "yield_stress",
+                                        "consistency",
+                                        "dimensionless",
+                                        "regularisation",
+                                        "fast_viscosity",
+                                        "relaxation_time",
+                                        "largest_viscosity",
+                                        "arrhenius",
+                                        "vft"};
 const TomlReader::Keys heat_keys = {"diffusivity", "melting_range", "initial"};
 
 void read_velocity(const TomlReader& keys, int dimensions, Body& body) {
@@ -67,7 +78,10 @@ void read_jump_number(const TomlReader& keys, Rheology& rheology) {
 
 void read_smd(const TomlReader& keys, Rheology& rheology) {
   rheology.model = Rheology::Model::smd;
-  if (keys.has("viscosity")) keys.fail("viscosity", "belongs to model \"newtonian\"; smd has jump_number");
+  for (const std::string_view key :
+       {"viscosity", "regularisation", "fast_viscosity", "relaxation_time", "largest_viscosity", "arrhenius", "vft"}) {
+    if (keys.has(key)) keys.fail(key, "belongs to model \"newtonian\" and others; smd has jump_number");
+  }
   keys.number("n", rheology.flow_index, Range{0, 2, false, ""});
   read_jump_number(keys, rheology);
   bool dimensionless = false;
@@ -80,12 +94,63 @@ void read_smd(const TomlReader& keys, Rheology& rheology) {
   keys.number("consistency", rheology.consistency, Range::positive("Pa s^n"));
 }
 
-void read_newtonian(const TomlReader& keys, Rheology& rheology) {
-  for (const std::string_view key : {"n", "jump_number", "yield_stress", "consistency", "dimensionless"}) {
-    if (keys.has(key)) keys.fail(key, "belongs to model \"smd\"; add model = \"smd\" or leave it out");
+using Model = Rheology::Model;
+
+/// The keys of each model beside those of all but smd.
+const std::vector<std::pair<Model, TomlReader::Keys>> keys_of_models = {
+    {Model::newtonian, {"viscosity"}},
+    {Model::power_law, {"n", "consistency"}},
+    {Model::bingham, {"viscosity", "yield_stress", "regularisation"}},
+    {Model::herschel_bulkley, {"n", "consistency", "yield_stress", "regularisation"}},
+    {Model::cross, {"viscosity", "fast_viscosity", "relaxation_time", "n"}},
+    {Model::carreau, {"viscosity", "fast_viscosity", "relaxation_time", "n"}}};
+
+void read_thermal(const TomlReader& keys, Rheology& rheology) {
+  if (keys.has("arrhenius") && keys.has("vft")) keys.fail("vft", "stands beside arrhenius; keep one of the two");
+  ThermalViscosity thermal;
+  if (const auto table = keys.table("arrhenius", {"activation_temperature", "reference_temperature"})) {
+    for (const char* key : {"activation_temperature", "reference_temperature"}) table->require(key, "give it in K");
+    table->number("activation_temperature", thermal.activation_temperature, Range::not_negative("K"));
+    table->number("reference_temperature", thermal.reference_temperature, Range::positive("K"));
+    rheology.thermal = thermal;
   }
-  keys.require("viscosity", "give the dynamic viscosity in Pa s");
+  if (const auto table = keys.table("vft", {"a", "b", "c"})) {
+    thermal.kind = ThermalViscosity::Kind::vft;
+    for (const char* key : {"a", "b", "c"}) table->require(key, "log10 of the factor is a + b/(T - c)");
+    table->number("a", thermal.a, Range::any(""));
+    table->number("b", thermal.b, Range::any("the scene's temperature unit"));
+    table->number("c", thermal.c, Range::any("the scene's temperature unit"));
+    rheology.thermal = thermal;
+  }
+  if (rheology.thermal) keys.require("largest_viscosity", "give the viscosity (Pa s) that cold fluid does not exceed");
+}
+
+/// All models but smd.
+void read_flow_curve(const TomlReader& keys, Rheology& rheology) {
+  const auto& own = *std::find_if(keys_of_models.begin(), keys_of_models.end(),
+                                  [&](const auto& m) { return m.first == rheology.model; });
+  const auto belongs = [&](std::string_view key) {
+    return std::find(own.second.begin(), own.second.end(), key) != own.second.end();
+  };
+  for (const std::string_view key : {"n", "jump_number", "yield_stress", "consistency", "dimensionless"}) {
+    if (!belongs(key) && keys.has(key))
+      keys.fail(key, "belongs to model \"smd\" and others, not to this one; add that model or leave it out");
+  }
+  for (const std::string_view key : {"viscosity", "regularisation", "fast_viscosity", "relaxation_time"}) {
+    if (!belongs(key) && keys.has(key)) keys.fail(key, "does not belong to this model; leave it out");
+  }
+  for (const std::string_view key : own.second) keys.require(key, "this model needs it; see docs/scenes.md");
   keys.number("viscosity", rheology.viscosity, Range::not_negative("Pa s"));
+  keys.number("n", rheology.flow_index, Range{0, 2, false, ""});
+  keys.number("consistency", rheology.consistency, Range::positive("Pa s^n"));
+  keys.number("yield_stress", rheology.yield_stress, Range::not_negative("Pa"));
+  keys.number("regularisation", rheology.regularisation, Range::positive("s"));
+  keys.number("fast_viscosity", rheology.fast_viscosity, Range::not_negative("Pa s"));
+  keys.number("relaxation_time", rheology.relaxation_time, Range::positive("s"));
+  const bool unbounded = belongs("consistency") && rheology.flow_index < 1;
+  if (unbounded) keys.require("largest_viscosity", "give the viscosity (Pa s) that fluid at rest does not exceed");
+  keys.number("largest_viscosity", rheology.largest_viscosity, Range::positive("Pa s"));
+  read_thermal(keys, rheology);
 }
 
 Rheology read_rheology(const TomlReader& fluid) {
@@ -93,11 +158,17 @@ Rheology read_rheology(const TomlReader& fluid) {
   Rheology rheology;
   if (!keys) return rheology;
   keys->choice<Rheology::Model>("model", rheology.model,
-                                {{"newtonian", Rheology::Model::newtonian}, {"smd", Rheology::Model::smd}});
+                                {{"newtonian", Model::newtonian},
+                                 {"smd", Model::smd},
+                                 {"power_law", Model::power_law},
+                                 {"bingham", Model::bingham},
+                                 {"herschel_bulkley", Model::herschel_bulkley},
+                                 {"cross", Model::cross},
+                                 {"carreau", Model::carreau}});
   if (rheology.model == Rheology::Model::smd) {
     read_smd(*keys, rheology);
   } else {
-    read_newtonian(*keys, rheology);
+    read_flow_curve(*keys, rheology);
   }
   return rheology;
 }
