@@ -61,11 +61,11 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
   constexpr bool corrected = true;
-  run_rates_pass(s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
-                 ShiftTransport<Real>(f.shifting, rho0),
-                 LaminarViscosity<Real, corrected>(f.laminar ? p.viscosity : 0, rho0),
-                 StressForce<Dim, Real>(f.stress, rho0),
-                 HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0), XsphTerm<Real>(f.xsph, rho0));
+  run_rates_pass(
+      s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
+      ShiftTransport<Real>(f.shifting, rho0), LaminarViscosity<Real, corrected>(f.laminar ? p.viscosity : 0, rho0),
+      StressForce<Dim, Real>(f.stress, rho0), HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
+      XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)                \

@@ -16,7 +16,8 @@ template <int Dim, class Real> void sum_density(State<Dim, Real>& s) {
     term[slot] = static_cast<Real>(p.eos.term(delta[slot]));
     if (half) half[slot] = delta[slot];
   }};
-  with_run_kernel(s, [&](const auto& kernel) {
+  const double h = p.support_radius / kernel_reach(p.density_kernel);
+  with_kernel<Real>(p.density_kernel, Dim, h, p.particle_mass, [&](const auto& kernel) {
     pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, DensitySum{});
   });
 }

@@ -17,7 +17,9 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
   const auto x = p[position];
   const auto v = p[velocity];
   const double m = s.parameters.particle_mass;
+  const Real* share = s.clock.step > 0 ? p[energy_share][0] : nullptr;  // of the last step
   Diagnostics zero;
+  if (share) zero.mean_energy_share = zero.largest_energy_share = 0;
   zero.lower.fill(std::numeric_limits<double>::max());
   zero.upper.fill(std::numeric_limits<double>::lowest());
   Diagnostics total = reduce_slots(
@@ -36,6 +38,11 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
         d.kinetic_energy += m * v2 / 2;
         d.max_speed = std::max(d.max_speed, std::sqrt(v2));
         d.max_compression = std::max(d.max_compression, std::abs(double(p[compression][0][slot])));
+        if (share) {
+          d.least_energy_share = std::min(d.least_energy_share, double(share[slot]));
+          d.mean_energy_share += share[slot];
+          d.largest_energy_share = std::max(d.largest_energy_share, double(share[slot]));
+        }
         if (s.features.internal_energy) d.internal_energy += m * p[internal_energy][0][slot];
         if (s.features.heat) d.heat += m * p[temperature][0][slot];
       },
@@ -44,6 +51,9 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
         a.kinetic_energy += b.kinetic_energy;
         a.potential_energy += b.potential_energy;
         a.internal_energy += b.internal_energy;
+        a.least_energy_share = std::min(a.least_energy_share, b.least_energy_share);
+        a.mean_energy_share += b.mean_energy_share;
+        a.largest_energy_share = std::max(a.largest_energy_share, b.largest_energy_share);
         a.heat += b.heat;
         for (int k = 0; k < Dim; ++k) {
           a.momentum[k] += b.momentum[k];
@@ -53,6 +63,7 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
         a.max_speed = std::max(a.max_speed, b.max_speed);
         a.max_compression = std::max(a.max_compression, b.max_compression);
       });
+  if (share) total.mean_energy_share /= static_cast<double>(std::max<std::int64_t>(total.particles, 1));
   for (int k = 0; k < 3; ++k)
     if (k >= Dim || total.particles == 0) total.lower[k] = total.upper[k] = 0;
   return total;

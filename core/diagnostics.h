@@ -14,12 +14,13 @@ namespace molten {
 struct Diagnostics {
   std::int64_t particles = 0;
   double kinetic_energy = 0, potential_energy = 0;  // J (2-D: J per m of depth); potential −m g·x
-  double internal_energy = 0;                       // J, from the start on
-  double heat = 0;                                  // Σ m T, kg K
-  std::array<double, 3> momentum{};                 // kg m/s
-  std::array<double, 3> lower{}, upper{};           // m; extent of the particles
-  double max_speed = 0;                             // m/s
-  double max_compression = 0;                       // largest |ρ/ρ0 − 1|
+  double least_energy_share = 1, mean_energy_share = 1, largest_energy_share = 1;  // of energy_bounded_euler
+  double internal_energy = 0;                                                      // J, from the start on
+  double heat = 0;                                                                 // Σ m T, kg K
+  std::array<double, 3> momentum{};                                                // kg m/s
+  std::array<double, 3> lower{}, upper{};                                          // m; extent of the particles
+  double max_speed = 0;                                                            // m/s
+  double max_compression = 0;                                                      // largest |ρ/ρ0 − 1|
 };
 
 /// The same bits for any thread count.

@@ -24,6 +24,8 @@ void require_sense(const Scene& scene) {
       (scene.numerics.state_equation != StateEquation::tait || scene.numerics.gamma != 7))
     refuse(scene,
            "numerics.particle_sound_speed: needs state_equation \"tait\" with gamma = 7; use them or leave it out");
+  if (scene.numerics.density_kernel && scene.numerics.density != DensityForm::summation)
+    refuse(scene, "numerics.density_kernel: is that of a density by summation; choose it or leave it out");
   if (scene.numerics.density_filter && scene.numerics.density == DensityForm::summation)
     refuse(scene, "numerics.density_filter: a density by summation needs no filter; leave one of the two out");
   if (scene.numerics.shifting && !scene.numerics.gradient_correction)
@@ -51,6 +53,8 @@ const char* name_of(IntegratorKind kind) {
       return "predictor-corrector";
     case IntegratorKind::runge_kutta_4:
       return "runge-kutta-4";
+    case IntegratorKind::energy_bounded_euler:
+      return "energy-bounded-euler";
   }
   return "";
 }
@@ -67,6 +71,7 @@ Features features_of(const Scene& scene) {
   f.particle_sound_speed = f.artificial_viscosity && scene.numerics.particle_sound_speed;
   f.tensile_correction = scene.numerics.tensile_correction;
   f.muller_viscosity = f.laminar && scene.numerics.muller_viscosity;
+  f.half_pressure = scene.numerics.half_pressure;
   f.internal_energy = scene.numerics.internal_energy;
   f.density_sum = scene.numerics.density == DensityForm::summation;
   f.density_filter = scene.numerics.density_filter.has_value();
@@ -86,6 +91,7 @@ FieldSet Features::columns() const {
     s |= field_set(FieldList<HalfVelocity, HalfCompression, PreviousCompressionRate>{});
   if (integrator == IntegratorKind::symplectic_euler)
     s |= field_set(FieldList<PreviousCompressionRate, OlderCompressionRate>{});
+  if (integrator == IntegratorKind::energy_bounded_euler) s |= field_set(FieldList<EnergyShare>{});
   if (stages() > 1) s |= field_set(FieldList<BasePosition, BaseVelocity, BaseCompression>{});
   if (stages() > 1 && heat) s |= field_set(FieldList<BaseTemperature>{});
   if (stages() > 2) s |= field_set(FieldList<PositionSlope, VelocitySlope, CompressionSlope>{});
@@ -122,6 +128,7 @@ std::vector<std::string> Features::names() const {
   if (particle_sound_speed) n.push_back("particle-sound-speed");
   if (tensile_correction) n.push_back("tensile-correction");
   if (muller_viscosity) n.push_back("muller-viscosity");
+  if (half_pressure) n.push_back("half-pressure");
   if (internal_energy) n.push_back("internal-energy");
   if (density_sum) n.push_back("density-summation");
   if (density_filter) n.push_back("density-filter");

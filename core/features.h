@@ -19,6 +19,7 @@ struct Features {
   bool particle_sound_speed = false;
   bool tensile_correction = false;
   bool muller_viscosity = false;
+  bool half_pressure = false;
   bool internal_energy = false;
   bool xsph = false;
   bool density_sum = false;     // density by summation
@@ -38,7 +39,9 @@ struct Features {
   bool reuses_rates() const { return integrator == IntegratorKind::predictor_corrector; }
 
   /// Something that only the rates pass with every term has.
-  bool any_seldom() const { return particle_sound_speed || tensile_correction || muller_viscosity || internal_energy; }
+  bool any_seldom() const {
+    return particle_sound_speed || tensile_correction || muller_viscosity || half_pressure || internal_energy;
+  }
 
   FieldSet columns() const;
   /// The passes of one step in their order.

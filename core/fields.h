@@ -73,6 +73,7 @@ MOLTEN_FIELD(TemperatureRate, StepScalar, temperature_rate, "K/s", "rate of temp
 MOLTEN_FIELD(InternalEnergy, ExactScalar, internal_energy, "J/kg",
              "internal energy since the start; leap-frog: half a step behind");
 MOLTEN_FIELD(InternalEnergyRate, StepScalar, internal_energy_rate, "W/kg", "rate of internal energy");
+MOLTEN_FIELD(EnergyShare, StepScalar, energy_share, "1", "share of the acceleration that the energy bound lets act");
 MOLTEN_FIELD(FilteredCompression, StepScalar, filtered_compression, "1", "compression after the density filter");
 MOLTEN_FIELD(Correction, StepTensor, correction, "1", "kernel-gradient correction L");
 MOLTEN_FIELD(LaplacianCorrection, StepScalar, laplacian_correction, "1", "factor that makes Laplacians whole");
@@ -99,7 +100,7 @@ using AllFields =
               OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress, Acceleration,
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
-              CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate>;
+              CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

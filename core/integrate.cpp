@@ -8,6 +8,7 @@
 // for 0.6 ≤ β ≤ 1.
 #include <cmath>
 
+#include "core/energy_bound.h"
 #include "core/mover.h"
 #include "core/particle_pass.h"
 #include "core/runge_kutta.h"
@@ -133,6 +134,7 @@ template <int Dim, class Real> class Preparation {
 template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   const auto scope = s.timer.scope(s.features.contact ? "integrate and collide" : "integrate");
   const IntegratorKind kind = s.features.integrator;
+  if (kind == IntegratorKind::energy_bounded_euler) return integrate_energy_bounded(s);
   if (kind != IntegratorKind::leap_frog && kind != IntegratorKind::symplectic_euler) return finish_stages(s);
   const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
   const Preparation<Dim, Real> preparation(s);

@@ -57,7 +57,8 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.kernel = n.kernel;
   p.eos = {n.state_equation, scene.fluid.density, n.sound_speed.value_or(default_sound_speed(scene, start, extent)),
            n.gamma};
-  if (n.state_equation == StateEquation::ideal_gas) p.eos.sound_speed = std::sqrt(n.stiffness);
+  if (n.state_equation == StateEquation::ideal_gas)
+    p.eos.sound_speed = std::sqrt(n.stiffness.value_or(p.eos.sound_speed * p.eos.sound_speed));
   const Rheology& r = scene.fluid.rheology;
   p.viscosity = r.viscosity;
   p.rheology = r;
@@ -72,7 +73,10 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
     p.reference_temperature = (*low + *high) / 2;
   }
   p.artificial_viscosity = n.artificial_viscosity;
-  if (n.xsph) p.xsph = n.xsph->epsilon, p.xsph_form = n.xsph->form;
+  if (n.xsph)
+    p.xsph = n.xsph->epsilon, p.xsph_form = n.xsph->form, p.xsph_neighbour_density = n.xsph->neighbour_density;
+  p.density_kernel = n.density_kernel.value_or(n.kernel);
+  p.energy_surplus = n.energy_surplus;
   if (n.density_filter) p.density_filter = *n.density_filter;
   if (n.shifting) p.shifting = n.shifting->strength;
   p.courant_sound = n.courant_sound;

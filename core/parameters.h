@@ -31,7 +31,10 @@ template <int Dim> struct Parameters {
   double artificial_viscosity = 0;                    // α
   double xsph = 0;                                    // ε
   Xsph::Form xsph_form = Xsph::Form::position;
-  double shifting = 0;  // C
+  bool xsph_neighbour_density = false;
+  double shifting = 0;                                  // C
+  KernelKind density_kernel = KernelKind::wendland_c2;  // of the summation
+  bool energy_surplus = true;
   DensityFilter density_filter;
   double courant_sound = 0, courant_viscous = 0, courant_force = 0, courant_conduction = 0;
   std::optional<double> fixed_dt;  // s

@@ -54,7 +54,7 @@ template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
     pass(artificial, Always(stress_force), Always(conduction));
   else
     pass(artificial, LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0), stress_force, conduction,
-         XsphTerm<Real>(s.features.xsph, rho0));
+         XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)              \

@@ -81,16 +81,16 @@ struct ThermalViscosity {
 /// Dynamic viscosity η(D, T), D = √(½ tr D²) the strain-rate magnitude (physics/rheology.h, physics/flow_curve.h).
 struct Rheology {
   enum class Model { newtonian, smd, power_law, bingham, herschel_bulkley, cross, carreau } model = Model::newtonian;
-  double viscosity = 0;                     // Pa s; newtonian (0: inviscid), bingham; cross, carreau: at rest
-  double flow_index = 0.5;                  // n
-  std::array<double, 2> jump_number{0, 0};  // J hot, J cold ([P] 6-3: J_min, J_max); equal without heat
-  double yield_stress = 1;                  // τ0, Pa
-  double consistency = 1;                   // K, Pa s^n
-  double regularisation = 0;                // m, s; bingham, herschel_bulkley
-  double fast_viscosity = 0;                // η∞, Pa s; cross, carreau
-  double relaxation_time = 0;               // λ, s; cross, carreau
-  double largest_viscosity = 1e30;          // Pa s; all but smd
-  std::optional<ThermalViscosity> thermal;  // all but smd
+  double viscosity = 0;                       // Pa s; newtonian (0: inviscid), bingham; cross, carreau: at rest
+  double flow_index = 0.5;                    // n
+  std::array<double, 2> jump_number{0, 0};    // J hot, J cold ([P] 6-3: J_min, J_max); equal without heat
+  double yield_stress = 1;                    // τ0, Pa
+  double consistency = 1;                     // K, Pa s^n
+  double regularisation = 0;                  // m, s; bingham, herschel_bulkley
+  double fast_viscosity = 0;                  // η∞, Pa s; cross, carreau
+  double relaxation_time = 0;                 // λ, s; cross, carreau
+  double largest_viscosity = 1e30;            // Pa s; all but smd
+  std::optional<ThermalViscosity> thermal{};  // all but smd
 
   /// The viscosity is the same everywhere and always.
   bool constant() const { return model == Model::newtonian && !thermal; }
@@ -133,13 +133,22 @@ struct Boundary {
 enum class KernelKind { gaussian, quadratic, cubic_spline, wendland_c2, lucy, poly6, spiky };
 enum class StateEquation { linear, tait, ideal_gas };
 enum class DensityForm { continuity, summation };
-enum class IntegratorKind { leap_frog, symplectic_euler, explicit_euler, midpoint, predictor_corrector, runge_kutta_4 };
+enum class IntegratorKind {
+  leap_frog,
+  symplectic_euler,
+  explicit_euler,
+  midpoint,
+  predictor_corrector,
+  runge_kutta_4,
+  energy_bounded_euler
+};
 enum class Precision { single, double_ };
 enum class Resort { when_due, each_step };
 
 struct Xsph {
   enum class Form { velocity, position } form = Form::position;
   double epsilon = 0.5;
+  bool neighbour_density = false;  // weight m/ρ_j ([Q]), which loses momentum, instead of m/ρ̄
 };
 
 struct Shifting {
@@ -168,7 +177,10 @@ struct Numerics {
   bool muller_viscosity = false;  // the form of a constant viscosity; else Morris'
   bool internal_energy = false;
   std::optional<Xsph> xsph;
-  double stiffness = 0;  // k of the ideal gas, m²/s²
+  std::optional<double> stiffness;  // k of the ideal gas, m²/s²; default: the square of the sound speed's default
+  std::optional<KernelKind> density_kernel;  // of the summation; default: the kernel
+  bool half_pressure = false;                // [Q]'s force, half of the pressure's gradient
+  bool energy_surplus = true;                // energy_bounded_euler hands on what particles leave of their bounds
   DensityForm density = DensityForm::continuity;
   std::optional<DensityFilter> density_filter;
   bool gradient_correction = false;

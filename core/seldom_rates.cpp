@@ -15,6 +15,24 @@ namespace molten {
 
 namespace {
 
+/// The symmetric pressure force, or [Q]'s −Σ V_j (p_i + p_j)/2 ∇W_ij (4.3, its stray μ removed), which is half of −∇p.
+struct OneOfPressures {
+  using Reads = FieldList<PressureTerm, Compression>;
+  using Sums = FieldList<Acceleration>;
+  using Radial = FieldList<Acceleration>;
+  static constexpr bool on = true;
+  bool half = false;
+
+  template <class Pair, class I, class J, class Out>
+  [[gnu::always_inline]] void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
+    using L = std::decay_t<decltype(ij.r2)>;
+    if (!half) return PressureForce{}(ij, i, j, out);
+    const L rho_i = L(1) + i[compression], rho_j = L(1) + j[compression];  // over ρ0
+    const L pressures = i[pressure_term] * rho_i * rho_i + j[pressure_term] * rho_j * rho_j;
+    out.along(acceleration, L(-0.5) * pressures * reciprocal(rho_i * rho_j));
+  }
+};
+
 /// m W(Δx), kg/m^d
 template <int Dim, class Real> double kernel_at_spacing(const Parameters<Dim>& p) {
   return with_kernel<double>(p.kernel, Dim, p.smoothing_length, p.particle_mass,
@@ -28,7 +46,7 @@ void seldom_pass(State<Dim, Real>& s, const Terms&... terms) {
   const double rho0 = p.eos.rest_density;
   const double constant_viscosity = f.laminar ? p.viscosity : 0;
   run_rates_pass(s,
-                 WithWork(f.internal_energy, PressureForce{},
+                 WithWork(f.internal_energy, OneOfPressures{f.half_pressure},
                           ArtificialViscosity<Real, true>(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length,
                                                           rho0, f.particle_sound_speed),
                           TensileCorrection<Real>(f.tensile_correction, kernel_at_spacing<Dim, Real>(p)),
@@ -36,8 +54,8 @@ void seldom_pass(State<Dim, Real>& s, const Terms&... terms) {
                           MullerViscosity<Dim, Real>(f.muller_viscosity ? constant_viscosity : 0, p.particle_mass, rho0,
                                                      p.support_radius),
                           StressForce<Dim, Real>(f.stress, rho0)),
-                 HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0), XsphTerm<Real>(f.xsph, rho0),
-                 terms...);
+                 HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
+                 XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density), terms...);
 }
 
 }  // namespace

@@ -12,7 +12,9 @@ namespace {
 
 constexpr const char* header =
     "time_s,step,dt_s,limit,particles,kinetic_energy_J,potential_energy_J,heat_kgK,momentum_x_kgm/s,momentum_y_kgm/s,"
-    "momentum_z_kgm/s,lower_x_m,lower_y_m,lower_z_m,upper_x_m,upper_y_m,upper_z_m,max_speed_m/s,max_compression\n";
+    "momentum_z_kgm/s,lower_x_m,lower_y_m,lower_z_m,upper_x_m,upper_y_m,upper_z_m,max_speed_m/"
+    "s,max_compression,internal_energy_J,"
+    "least_energy_share,mean_energy_share,largest_energy_share\n";
 
 std::vector<std::string> first_rows(const std::filesystem::path& file, std::int64_t count) {
   std::vector<std::string> rows;
@@ -42,10 +44,10 @@ Series::Series(const std::filesystem::path& file, std::int64_t keep) : file_(fil
 void Series::add(const Clock& c, const Diagnostics& d) {
   out_ << fmt::format(
       "{:.9g},{},{:.6g},{},{},{:.9g},{:.9g},{:.12g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},"
-      "{:.6g},{:.6g},{:.6g}\n",
+      "{:.6g},{:.6g},{:.6g},{:.9g},{:.6g},{:.6g},{:.6g}\n",
       c.time, c.step, c.dt, name_of(c.limit), d.particles, d.kinetic_energy, d.potential_energy, d.heat, d.momentum[0],
       d.momentum[1], d.momentum[2], d.lower[0], d.lower[1], d.lower[2], d.upper[0], d.upper[1], d.upper[2], d.max_speed,
-      d.max_compression);
+      d.max_compression, d.internal_energy, d.least_energy_share, d.mean_energy_share, d.largest_energy_share);
   if (!out_.flush()) throw Error(ExitCode::files, file_.string() + ": cannot write; check the disk");
 }
 

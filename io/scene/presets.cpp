@@ -1,5 +1,7 @@
 #include "io/scene/presets.h"
 
+#include <numbers>
+
 namespace molten {
 namespace {
 
@@ -35,11 +37,55 @@ Numerics internal() {
   return numerics;
 }
 
+/// Queiroz 2008 ([Q]), chapters 3 and 4: Müller's kernels (poly6 for density, spiky for pressure, the viscosity
+/// kernel), density by summation (4.2), ideal gas (4.7), the force of pressure as printed, which is half of the
+/// gradient (4.3), Müller's viscosity (4.5), XSPH with 0.4 on the velocity and neighbours' densities, and the
+/// energy-bounded two-step Euler method with its surplus (3.51-3.53). Not stated there and chosen here: the
+/// support, 2.6 spacings. XSPH weighs with the spiky kernel here. Steps are fixed in [Q]: give fixed_dt.
+Numerics queiroz() {
+  Numerics numerics;
+  numerics.preset = "queiroz";
+  numerics.kernel = KernelKind::spiky;
+  numerics.density_kernel = KernelKind::poly6;
+  numerics.smoothing_ratio = 2.6;
+  numerics.density = DensityForm::summation;
+  numerics.state_equation = StateEquation::ideal_gas;
+  numerics.half_pressure = true;
+  numerics.muller_viscosity = true;
+  numerics.artificial_viscosity = 0;
+  numerics.xsph = Xsph{Xsph::Form::velocity, 0.4, true};
+  numerics.integrator = IntegratorKind::energy_bounded_euler;
+  return numerics;
+}
+
+/// Dias 2017 ([D]), chapters 4 to 6, made with SPHysics 2.2: Wendland kernel with h = 0.92 √2 spacings,
+/// predictor-corrector, Tait with γ = 7 and the particles' own sound speeds, XSPH with 0.5 on positions, density
+/// filtered every 30 steps (MLS; Shepard by density_filter.kind), Courant number 0.2 for sound and forces, artificial
+/// viscosity 0.2 (0.1 to 0.3 there), no tensile correction.
+Numerics dias() {
+  Numerics numerics;
+  numerics.preset = "dias";
+  numerics.kernel = KernelKind::wendland_c2;
+  numerics.smoothing_ratio = 0.92 * std::numbers::sqrt2;
+  numerics.integrator = IntegratorKind::predictor_corrector;
+  numerics.state_equation = StateEquation::tait;
+  numerics.gamma = 7;
+  numerics.particle_sound_speed = true;
+  numerics.artificial_viscosity = 0.2;
+  numerics.xsph = Xsph{Xsph::Form::position, 0.5};
+  numerics.density_filter = DensityFilter{DensityFilter::Kind::mls, 30};
+  numerics.courant_sound = 0.2;
+  numerics.courant_force = 0.2;
+  return numerics;
+}
+
 }  // namespace
 
 std::optional<Numerics> find_preset(std::string_view name) {
   if (name == "molten") return Numerics{};
   if (name == "internal") return internal();
+  if (name == "queiroz") return queiroz();
+  if (name == "dias") return dias();
   if (name == "paiva") return paiva();
   return std::nullopt;
 }

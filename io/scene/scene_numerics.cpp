@@ -23,7 +23,14 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "gradient_correction",
                                         "shifting",
                                         "density",
-                                        "density_filter", "particle_sound_speed", "tensile_correction", "internal_energy", "viscosity_form",
+                                        "density_filter",
+                                        "particle_sound_speed",
+                                        "tensile_correction",
+                                        "internal_energy",
+                                        "viscosity_form",
+                                        "half_pressure",
+                                        "energy_surplus",
+                                        "density_kernel",
                                         "stiffness"};
 
 Numerics read_preset(const TomlReader& keys) {
@@ -31,33 +38,35 @@ Numerics read_preset(const TomlReader& keys) {
   keys.choice<std::string>(
       "preset", name,
       {{"molten", "molten"}, {"internal", "internal"}, {"paiva", "paiva"}, {"queiroz", "queiroz"}, {"dias", "dias"}});
-  const std::optional<Numerics> preset = find_preset(name);
-  if (!preset) {
-    keys.fail("preset",
-              fmt::format("\"{}\" is not available in this version; use \"molten\", \"internal\" or \"paiva\"", name));
-  }
-  return *preset;
+  return *find_preset(name);
 }
+
+const std::vector<std::pair<std::string_view, KernelKind>> kernels = {{"gaussian", KernelKind::gaussian},
+                                                                      {"quadratic", KernelKind::quadratic},
+                                                                      {"cubic_spline", KernelKind::cubic_spline},
+                                                                      {"wendland_c2", KernelKind::wendland_c2},
+                                                                      {"lucy", KernelKind::lucy},
+                                                                      {"poly6", KernelKind::poly6},
+                                                                      {"spiky", KernelKind::spiky}};
 
 void read_choices(const TomlReader& keys, Numerics& numerics) {
   keys.choice<Precision>("precision", numerics.precision,
                          {{"single", Precision::single}, {"double", Precision::double_}});
   keys.choice<Resort>("resort", numerics.resort, {{"when_due", Resort::when_due}, {"each_step", Resort::each_step}});
-  keys.choice<KernelKind>("kernel", numerics.kernel,
-                          {{"gaussian", KernelKind::gaussian},
-                           {"quadratic", KernelKind::quadratic},
-                           {"cubic_spline", KernelKind::cubic_spline},
-                           {"wendland_c2", KernelKind::wendland_c2},
-                           {"lucy", KernelKind::lucy},
-                           {"poly6", KernelKind::poly6},
-                           {"spiky", KernelKind::spiky}});
+  keys.choice<KernelKind>("kernel", numerics.kernel, kernels);
+  if (keys.has("density_kernel")) {
+    KernelKind kernel = numerics.kernel;
+    keys.choice<KernelKind>("density_kernel", kernel, kernels);
+    numerics.density_kernel = kernel;
+  }
   keys.choice<IntegratorKind>("integrator", numerics.integrator,
                               {{"leap_frog", IntegratorKind::leap_frog},
                                {"symplectic_euler", IntegratorKind::symplectic_euler},
                                {"explicit_euler", IntegratorKind::explicit_euler},
                                {"midpoint", IntegratorKind::midpoint},
                                {"predictor_corrector", IntegratorKind::predictor_corrector},
-                               {"runge_kutta_4", IntegratorKind::runge_kutta_4}});
+                               {"runge_kutta_4", IntegratorKind::runge_kutta_4},
+                               {"energy_bounded_euler", IntegratorKind::energy_bounded_euler}});
   keys.choice<StateEquation>(
       "state_equation", numerics.state_equation,
       {{"linear", StateEquation::linear}, {"tait", StateEquation::tait}, {"ideal_gas", StateEquation::ideal_gas}});
@@ -73,9 +82,10 @@ void read_xsph(const TomlReader& keys, Numerics& numerics) {
     numerics.xsph.reset();
     return;
   }
-  const TomlReader table = *keys.table("xsph", {"form", "epsilon"});
+  const TomlReader table = *keys.table("xsph", {"form", "epsilon", "density"});
   Xsph xsph = numerics.xsph.value_or(Xsph{});
   table.choice<Xsph::Form>("form", xsph.form, {{"velocity", Xsph::Form::velocity}, {"position", Xsph::Form::position}});
+  table.choice<bool>("density", xsph.neighbour_density, {{"mean", false}, {"neighbour", true}});
   table.number("epsilon", xsph.epsilon, Range{0, 1, false, ""});
   numerics.xsph = xsph;
 }
@@ -106,7 +116,6 @@ void read_state_equation(const TomlReader& keys, Numerics& numerics) {
   if (gas && keys.has("sound_speed"))
     keys.fail("sound_speed", "of an ideal gas is the root of stiffness; leave it out");
   if (!gas && keys.has("stiffness")) keys.fail("stiffness", "belongs to state_equation \"ideal_gas\"; leave it out");
-  if (gas && !(numerics.stiffness > 0)) keys.require("stiffness", "give the k of p = k (rho - rho0) in m²/s²");
   keys.number("stiffness", numerics.stiffness, Range::positive("m²/s²"));
   keys.number("sound_speed", numerics.sound_speed, Range::positive("m/s"));
 }
@@ -115,9 +124,14 @@ void read_seldom(const TomlReader& keys, Numerics& numerics) {
   keys.flag("particle_sound_speed", numerics.particle_sound_speed);
   keys.flag("tensile_correction", numerics.tensile_correction);
   keys.flag("internal_energy", numerics.internal_energy);
+  keys.flag("half_pressure", numerics.half_pressure);
+  if (keys.has("energy_surplus") && numerics.integrator != IntegratorKind::energy_bounded_euler)
+    keys.fail("energy_surplus", "belongs to integrator \"energy_bounded_euler\"; leave it out");
+  keys.flag("energy_surplus", numerics.energy_surplus);
+  if (keys.has("density_kernel") && numerics.density != DensityForm::summation)
+    keys.fail("density_kernel", "is that of density = \"summation\"; add it or leave this out");
   keys.choice<bool>("viscosity_form", numerics.muller_viscosity, {{"morris", false}, {"muller", true}});
-  if (numerics.particle_sound_speed &&
-      (numerics.state_equation != StateEquation::tait || numerics.gamma != 7)) {
+  if (numerics.particle_sound_speed && (numerics.state_equation != StateEquation::tait || numerics.gamma != 7)) {
     keys.fail("particle_sound_speed", "is that of state_equation \"tait\" with gamma = 7; use them or leave it out");
   }
 }
