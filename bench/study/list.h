@@ -1,0 +1,27 @@
+// The cases, one file each.
+#pragma once
+
+#include "bench/study/case.h"
+
+namespace molten::study {
+
+Case taylor_green();
+Case hot_spot();
+Case two_slabs();
+Case poiseuille();
+Case smd_channel();
+Case standing_wave();
+Case hydrostatic_box();
+Case hydrostatic_bowl();
+Case slope_yield();
+Case elliptic_drop();
+Case rotating_patch();
+Case cruchaga_a();
+Case cruchaga_b();
+Case lobovsky_front();
+Case lobovsky_pressure();
+Case martin_moyce();
+Case koshizuka();
+Case kleefsman();
+
+}  // namespace molten::study
