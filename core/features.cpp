@@ -35,6 +35,8 @@ Features features_of(const Scene& scene) {
   f.artificial_viscosity = scene.numerics.artificial_viscosity > 0;
   f.xsph = scene.numerics.xsph && scene.numerics.xsph->epsilon > 0;
   f.contact = !scene.boundaries.empty();
+  f.wall_support = f.contact && scene.numerics.wall_support;
+  f.density_diffusion = scene.numerics.density_diffusion > 0;
   f.integrator = scene.numerics.integrator;
   return f;
 }
@@ -66,6 +68,8 @@ std::vector<std::string> Features::names() const {
   if (artificial_viscosity) n.push_back("artificial-viscosity");
   if (xsph) n.push_back("xsph");
   if (contact) n.push_back("contact");
+  if (wall_support) n.push_back("wall-support");
+  if (density_diffusion) n.push_back("density-diffusion");
   n.push_back(integrator == IntegratorKind::leap_frog ? "leap-frog" : "symplectic-euler");
   return n;
 }

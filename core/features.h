@@ -16,7 +16,9 @@ struct Features {
   bool laminar = false;  // constant viscosity
   bool artificial_viscosity = false;
   bool xsph = false;
-  bool contact = false;  // walls
+  bool contact = false;       // walls
+  bool wall_support = false;  // walls make up for what they cut off a particle's support
+  bool density_diffusion = false;
   IntegratorKind integrator = IntegratorKind::leap_frog;
 
   /// No forces but pressure and artificial viscosity, no heat, no XSPH: the shortest instantiation of the forces pass

@@ -2,9 +2,11 @@
 #include <cmath>
 #include <vector>
 
+#include "core/boundary/wall_terms.h"
 #include "core/pair_pass.h"
 #include "core/physics/artificial_viscosity.h"
 #include "core/physics/continuity.h"
+#include "core/physics/density_diffusion.h"
 #include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
 #include "core/physics/viscous_stress.h"
@@ -126,8 +128,10 @@ template <int Dim, class Real, class F> void with_run_kernel(const State<Dim, Re
 template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("viscosity");
   const auto finish = viscosity_finish(s);
+  const StrainRateTerm term;
   with_run_kernel(s, [&](const auto& kernel) {
-    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, StrainRateTerm{});
+    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel,
+                                  WithWalls(s.wall_support, s.parameters, s.particles, finish, term), term);
   });
 }
 
@@ -140,20 +144,22 @@ template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   const Continuity continuity;
   const PressureForce pressure;
   const ArtificialViscosity<Real> artificial(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, rho0);
+  const DensityDiffusion<Dim, Real> diffusion(p.density_diffusion, p.smoothing_length, p.eos, p.gravity);
   with_run_kernel(s, [&](const auto& kernel) {
     const auto pass = [&](const auto&... terms) {
-      pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, continuity, pressure, terms...);
+      const WithWalls walls(s.wall_support, p, s.particles, finish, continuity, pressure, terms...);
+      pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, walls, continuity, pressure, terms...);
     };
     // What most scenes have, without and with artificial viscosity; what melts; and all that a scene may have.
     const StressForce<Dim, Real> stress_force(s.features.stress, rho0);
     const HeatConduction<Real> conduction(s.features.heat ? p.diffusivity : 0, rho0);
     if (s.features.only_basic_forces())
-      artificial.on ? pass(Always(artificial)) : pass();
-    else if (stress_force.on && conduction.on && !s.features.xsph)
+      diffusion.on ? pass(artificial, Always(diffusion)) : artificial.on ? pass(Always(artificial)) : pass();
+    else if (stress_force.on && conduction.on && !s.features.xsph && !diffusion.on)
       pass(artificial, Always(stress_force), Always(conduction));
     else
       pass(artificial, LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0), stress_force, conduction,
-           XsphTerm<Real>(s.features.xsph, rho0));
+           diffusion, XsphTerm<Real>(s.features.xsph, rho0));
   });
   s.extremes = joined(extremes);
   if (s.features.laminar) s.extremes.kinematic_viscosity = p.viscosity / rho0;

@@ -7,9 +7,9 @@ namespace molten {
 namespace {
 
 const TomlReader::Keys numerics_keys = {
-    "preset",     "precision",      "resort", "kernel",      "smoothing_ratio",      "skin",
-    "integrator", "state_equation", "gamma",  "sound_speed", "artificial_viscosity", "xsph",
-    "courant",    "fixed_dt"};
+    "preset",     "precision",      "resort",       "kernel",           "smoothing_ratio",      "skin",
+    "integrator", "state_equation", "gamma",        "sound_speed",      "artificial_viscosity", "xsph",
+    "courant",    "fixed_dt",       "wall_support", "density_diffusion"};
 
 Numerics read_preset(const TomlReader& keys) {
   std::string name = "molten";
@@ -82,6 +82,8 @@ Numerics read_numerics(const TomlReader& root) {
   keys->number("artificial_viscosity", numerics.artificial_viscosity, Range::not_negative(""));
   read_xsph(*keys, numerics);
   read_courant(*keys, numerics);
+  keys->flag("wall_support", numerics.wall_support);
+  keys->number("density_diffusion", numerics.density_diffusion, Range{0, 1, true, ""});
   keys->number("fixed_dt", numerics.fixed_dt, Range::positive("s"));
   return numerics;
 }
