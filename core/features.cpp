@@ -78,7 +78,13 @@ Features features_of(const Scene& scene) {
   f.gradient_correction = scene.numerics.gradient_correction;
   f.shifting = scene.numerics.shifting.has_value();
   f.contact = !scene.boundaries.empty();
+  f.wall_support = f.contact && scene.numerics.wall_support;
+  f.density_diffusion = scene.numerics.density_diffusion > 0;
   f.integrator = scene.numerics.integrator;
+  if ((f.wall_support || f.density_diffusion) && (f.gradient_correction || f.any_seldom()))
+    refuse(scene, std::string("numerics.") + (f.wall_support ? "wall_support" : "density_diffusion") +
+                      ": does not go together with gradient_correction or with the methods kept for replication; leave "
+                      "one of the two out");
   return f;
 }
 
@@ -135,6 +141,8 @@ std::vector<std::string> Features::names() const {
   if (gradient_correction) n.push_back("gradient-correction");
   if (shifting) n.push_back("shifting");
   if (contact) n.push_back("contact");
+  if (wall_support) n.push_back("wall-support");
+  if (density_diffusion) n.push_back("density-diffusion");
   n.push_back(name_of(integrator));
   return n;
 }

@@ -26,7 +26,9 @@ struct Features {
   bool density_filter = false;  // every so many steps
   bool gradient_correction = false;
   bool shifting = false;
-  bool contact = false;  // walls
+  bool contact = false;       // walls
+  bool wall_support = false;  // walls make up for what they cut off a particle's support
+  bool density_diffusion = false;
   IntegratorKind integrator = IntegratorKind::leap_frog;
 
   /// No forces but pressure and artificial viscosity, no heat, no XSPH: the shortest instantiation of the forces pass

@@ -42,6 +42,7 @@ template <int Dim, class L> struct Pair {
 template <class F, int Dim, class T> struct Slot { value_t<F, Dim, T> value; };
 template <class List, int Dim, class T> struct Values;
 template <class... F, int Dim, class T> struct Values<FieldList<F...>, Dim, T> : Slot<F, Dim, T>... {
+  using List = FieldList<F...>;
   template <class G>
   requires contains<G, FieldList<F...>> value_t<G, Dim, T>
   &operator[](G) { return Slot<G, Dim, T>::value; }

@@ -27,6 +27,18 @@ double default_sound_speed(const Scene& scene, const Start& start, const Extent&
   return 10 * std::sqrt(2 * fall + fastest2 + 1e-12);
 }
 
+/// −g·x of a surface half a spacing above the highest particle.
+double surface_potential(const Scene& scene, const Start& start) {
+  double highest = -1e300, g2 = 0;
+  for (int d = 0; d < scene.dimensions; ++d) g2 += scene.gravity[d] * scene.gravity[d];
+  for (const auto& x : start.position) {
+    double potential = 0;
+    for (int d = 0; d < scene.dimensions; ++d) potential -= scene.gravity[d] * x[d];
+    highest = std::max(highest, potential);
+  }
+  return highest + std::sqrt(g2) * start.spacing / 2;
+}
+
 /// A hundred extents of the fluid to each side: far enough that only what has escaped is dropped.
 template <int Dim> Domain<Dim> domain_of(const Scene& scene, const Extent& extent, double spacing) {
   Domain<Dim> domain;
@@ -52,6 +64,8 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.smoothing_length = n.smoothing_ratio * start.spacing;
   p.support_radius = kernel_reach(n.kernel) * p.smoothing_length;
   p.skin = n.skin * start.spacing;
+  // Walls with support hold particles by their pressure, further off than this; contact is for what goes too fast.
+  p.contact_radius = n.wall_support ? start.spacing / 4 : start.spacing / 2;
   p.particle_mass = scene.fluid.density * start.measure / static_cast<double>(start.position.size());
   for (int d = 0; d < Dim; ++d) p.gravity[d] = scene.gravity[d];
   p.kernel = n.kernel;
@@ -59,6 +73,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
            n.gamma};
   if (n.state_equation == StateEquation::ideal_gas)
     p.eos.sound_speed = std::sqrt(n.stiffness.value_or(p.eos.sound_speed * p.eos.sound_speed));
+  if (scene.fluid.hydrostatic) p.surface_potential = surface_potential(scene, start);
   const Rheology& r = scene.fluid.rheology;
   p.viscosity = r.viscosity;
   p.rheology = r;
@@ -73,6 +88,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
     p.reference_temperature = (*low + *high) / 2;
   }
   p.artificial_viscosity = n.artificial_viscosity;
+  p.density_diffusion = n.density_diffusion;
   if (n.xsph)
     p.xsph = n.xsph->epsilon, p.xsph_form = n.xsph->form, p.xsph_neighbour_density = n.xsph->neighbour_density;
   p.density_kernel = n.density_kernel.value_or(n.kernel);

@@ -17,10 +17,12 @@ namespace molten {
 template <int Dim> struct Parameters {
   double spacing = 0, smoothing_length = 0, support_radius = 0, skin = 0;  // m
   double particle_mass = 0;                                                // kg (2-D: kg per m of depth)
+  double contact_radius = 0;                                               // m, of particles that meet walls
   std::array<double, Dim> gravity{};                                       // m/s²
   KernelKind kernel = KernelKind::wendland_c2;
   EquationOfState eos;
-  double viscosity = 0;  // Pa s, Newtonian
+  std::optional<double> surface_potential;  // m²/s², −g·x of the surface that the fluid is at rest below, at the start
+  double viscosity = 0;                     // Pa s, Newtonian
   Smd smd;
   Rheology rheology;
   double viscosity_at(double strain, double temperature) const {
@@ -29,6 +31,7 @@ template <int Dim> struct Parameters {
   }
   double diffusivity = 0, reference_temperature = 0;  // m²/s; T that local temperatures refer to
   double artificial_viscosity = 0;                    // α
+  double density_diffusion = 0;                       // δ
   double xsph = 0;                                    // ε
   Xsph::Form xsph_form = Xsph::Form::position;
   bool xsph_neighbour_density = false;

@@ -2,6 +2,7 @@
 #include "core/rates_pass.h"
 
 #include "core/physics/continuity.h"
+#include "core/physics/density_diffusion.h"
 #include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
 #include "core/physics/viscous_stress.h"
@@ -31,9 +32,10 @@ template <int Dim, class Real> auto viscosity_finish(State<Dim, Real>& s) {
 template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("viscosity");
   const auto finish = viscosity_finish(s);
+  const StrainRateTerm term{s.features.gradient_correction};
   with_run_kernel(s, [&](const auto& kernel) {
-    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish,
-                                  StrainRateTerm{s.features.gradient_correction});
+    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel,
+                                  WithWalls(s.wall_support, s.parameters, s.particles, finish, term), term);
   });
 }
 
@@ -43,18 +45,19 @@ template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   if (s.features.gradient_correction) return corrected_rates_pass(s);
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
-  const auto pass = [&](const auto&... terms) { run_rates_pass(s, Continuity{}, PressureForce{}, terms...); };
+  const auto pass = [&](const auto&... terms) { run_rates_pass_at_walls(s, Continuity{}, PressureForce{}, terms...); };
   // What most scenes have, without and with artificial viscosity; what melts; and all that a scene may have.
   const ArtificialViscosity<Real> artificial = artificial_viscosity_of(s);
+  const DensityDiffusion<Dim, Real> diffusion(p.density_diffusion, p.smoothing_length, p.eos, p.gravity);
   const StressForce<Dim, Real> stress_force(s.features.stress, rho0);
   const HeatConduction<Real> conduction(s.features.heat ? p.diffusivity : 0, rho0);
   if (s.features.only_basic_forces())
-    artificial.on ? pass(Always(artificial)) : pass();
-  else if (stress_force.on && conduction.on && !s.features.xsph)
+    diffusion.on ? pass(artificial, Always(diffusion)) : artificial.on ? pass(Always(artificial)) : pass();
+  else if (stress_force.on && conduction.on && !s.features.xsph && !diffusion.on)
     pass(artificial, Always(stress_force), Always(conduction));
   else
     pass(artificial, LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0), stress_force, conduction,
-         XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
+         diffusion, XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)              \

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/boundary/wall_terms.h"
 #include "core/pair_pass.h"
 #include "core/physics/artificial_viscosity.h"
 #include "core/step.h"
@@ -104,15 +105,30 @@ template <int Dim, class Real, class F> void with_run_kernel(const State<Dim, Re
   with_kernel<Real>(p.kernel, Dim, p.smoothing_length, p.particle_mass, std::forward<F>(f));
 }
 
-/// The given terms fused → rates and extremes.
-template <int Dim, class Real, class... Terms> void run_rates_pass(State<Dim, Real>& s, const Terms&... terms) {
+/// The given terms fused → rates and extremes; with(finish) is what becomes of the sums.
+template <int Dim, class Real, class With, class... Terms>
+void run_rates_pass_with(State<Dim, Real>& s, const With& with, const Terms&... terms) {
   std::vector<Extremes> extremes(s.neighbours.chunks().size());
   const RatesFinish<Dim, Real> finish{s, extremes};
   with_run_kernel(s, [&](const auto& kernel) {
-    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, terms...);
+    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, with(finish), terms...);
   });
   s.extremes = joined(extremes);
   if (s.features.laminar) s.extremes.kinematic_viscosity = s.parameters.viscosity / s.parameters.eos.rest_density;
+}
+
+template <int Dim, class Real, class... Terms> void run_rates_pass(State<Dim, Real>& s, const Terms&... terms) {
+  run_rates_pass_with(
+      s, [](const auto& finish) -> const auto& { return finish; }, terms...);
+}
+
+/// The same with what walls add.
+template <int Dim, class Real, class... Terms>
+void run_rates_pass_at_walls(State<Dim, Real>& s, const Terms&... terms) {
+  const auto walls = [&](const auto& finish) {
+    return WithWalls(s.wall_support, s.parameters, s.particles, finish, terms...);
+  };
+  run_rates_pass_with(s, walls, terms...);
 }
 
 /// The artificial viscosity of the run.

@@ -114,6 +114,7 @@ struct Fluid {
   std::optional<long long> particles;  // asked number over all bodies; the spacing follows
   std::optional<double> spacing;       // m; or the spacing itself (exactly one of the two)
   double density = 1000;               // ρ0, kg/m³
+  bool hydrostatic = false;            // starts with the pressure of a fluid at rest below its highest point
   Rheology rheology;
   std::optional<Heat> heat;
   Place place;
@@ -121,11 +122,20 @@ struct Fluid {
 
 // ---- boundaries -------------------------------------------------------------------------------------------------
 
+/// What heat has to pass on its way to a wall's temperature.
+struct GroundLayer {
+  double diffusivity = 0;  // m²/s: its conductivity over the fluid's density and heat capacity
+  double thickness = 0;    // m
+};
+
 struct Boundary {
   Shape shape;
-  double restitution = 0;  // what the normal velocity keeps, reversed
-  double slip = 0;         // what the tangential velocity keeps: 0 no-slip, 1 free slip
-  bool inside = false;     // closed shapes: true = a container, the fluid is inside; false = an obstacle, outside
+  double restitution = 0;             // what the normal velocity keeps, reversed
+  double slip = 0;                    // what the tangential velocity keeps: 0 no-slip, 1 free slip
+  std::array<double, 3> velocity{};   // m/s, along the wall, which itself stays where it is; with wall support
+  std::optional<double> temperature;  // of the surface, the scene's unit; none: insulating; with wall support
+  std::optional<GroundLayer> ground;  // between the surface and that temperature
+  bool inside = false;  // closed shapes: true = a container, the fluid is inside; false = an obstacle, outside
 };
 
 // ---- numerics ---------------------------------------------------------------------------------------------------
@@ -186,6 +196,8 @@ struct Numerics {
   bool gradient_correction = false;
   std::optional<Shifting> shifting;  // needs gradient_correction
   double courant_sound = 0.2, courant_viscous = 0.1, courant_force = 0.25, courant_conduction = 0.4;
+  double density_diffusion = 0;    // δ of δ-SPH; 0: no term
+  bool wall_support = false;       // walls make up for what they cut off a particle's support
   std::optional<double> fixed_dt;  // s; overrides the adaptive step
 };
 

@@ -42,6 +42,7 @@ template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
   particles.archive(a);
   neighbours.archive(a);
   a.vector("neighbours/near_wall", near_wall);  // as of the last sort: where the particles are now tells otherwise
+  if (features.wall_support) wall_support.archive(a);
   if (a.loading()) neighbours.relist(particles);
 }
 
@@ -57,7 +58,9 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
       {},
       {},
       {},
+      {},
       {}};
+  if (features.wall_support) s.wall_support = {s.contact, parameters};
   Particles<Dim, Real>& p = s.particles;
   const std::size_t count = start.position.size();
   p.resize((count + cluster_size - 1) / cluster_size * cluster_size, count);
@@ -74,6 +77,12 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
       if (p.has(half_velocity)) p[half_velocity][d][k] = p[velocity][d][k];
     }
     if (p.has(temperature)) p[temperature][0][k] = start.temperature[k];
+    if (parameters.surface_potential) {
+      double depth = *parameters.surface_potential;
+      for (int d = 0; d < Dim; ++d) depth += parameters.gravity[d] * start.position[k][d];
+      p[compression][0][k] = static_cast<Real>(parameters.eos.compression_at_rest(depth));
+      if (p.has(half_compression)) p[half_compression][0][k] = p[compression][0][k];
+    }
   }
   sort_and_list(s);
   return s;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/boundary/contact.h"
+#include "core/boundary/wall_support.h"
 #include "core/features.h"
 #include "core/neighbours.h"
 #include "core/parameters.h"
@@ -43,12 +44,15 @@ template <int Dim, class Real> struct State {
   Particles<Dim, Real> particles;
   Neighbours<Dim, Real> neighbours;     // good between sorts
   std::vector<std::uint8_t> near_wall;  // by cluster: a wall may be met before the next sort
+  WallSupport<Dim> wall_support;        // empty without the feature
   Clock clock;                          // this step
   Extremes extremes;
   Timer timer;
 
   void archive(Archive& a);
-  std::size_t bytes() const { return particles.bytes() + neighbours.bytes() + near_wall.capacity(); }
+  std::size_t bytes() const {
+    return particles.bytes() + neighbours.bytes() + near_wall.capacity() + wall_support.bytes();
+  }
 };
 
 /// The start of a run, sorted and listed.

@@ -49,6 +49,7 @@ template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("sort and list");
   s.neighbours.rebuild(s.particles);
   mark_near_wall(s);
+  if (s.features.wall_support) s.wall_support.mark(s.particles);
   prepare(s);
 }
 

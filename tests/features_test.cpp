@@ -134,6 +134,17 @@ TEST(Features, WallsAddTheirPass) {
   expect_adds([](Scene& s) { s.boundaries.emplace_back(); }, {{}, {"integrate"}, {"integrate and collide"}});
 }
 
+TEST(Features, SupportAndDensityDiffusionAddNoColumnAndNoPass) {
+  expect_adds([](Scene& s) { s.numerics.density_diffusion = 0.1; }, {});
+  expect_adds([](Scene& s) { s.numerics.wall_support = true; }, {});
+  Scene scene = minimal();
+  scene.numerics.wall_support = true;
+  EXPECT_FALSE(features_of(scene).wall_support) << "without walls";
+  scene.boundaries.emplace_back();
+  scene.numerics.density_diffusion = 0.1;
+  EXPECT_EQ(features_of(scene).names(), (Names{"contact", "wall-support", "density-diffusion", "leap-frog"}));
+}
+
 TEST(Features, WallsHeatMeltingAndXsphTogether) {
   Scene scene = minimal();
   scene.boundaries.emplace_back();

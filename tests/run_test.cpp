@@ -109,9 +109,9 @@ series_every = 0.003
 precision = "{}"
 integrator = "{}"
 xsph = {{ form = "position", epsilon = 0.3 }}
-{}
-)",
-                     dimensions, body, flat ? "[0.5, -0.5]" : "[0.5, 0.0, -0.5]", walls, precision, integrator, more);
+{}{})",
+                     dimensions, body, flat ? "[0.5, -0.5]" : "[0.5, 0.0, -0.5]", walls, precision, integrator, more,
+                     integrator == "symplectic_euler" ? "wall_support = true\ndensity_diffusion = 0.1\n" : "");
 }
 
 /// A scene in a folder of its own, with runs beside it.

@@ -51,6 +51,23 @@ TEST(SceneFile, ReadsEverything) {
   EXPECT_EQ(scene.text, good);
 }
 
+TEST(SceneFile, WallsWithSupport) {
+  const std::string keys =
+      "slip = 0.5\nvelocity = [0.1, 0, 0]\ntemperature = 30\n"
+      "ground = { diffusivity = 1e-6, thickness = 0.2 }";
+  std::string text = replaced(good, "slip = 0.5", keys);
+  text = replaced(text, "[numerics]", "[numerics]\nwall_support = true\ndensity_diffusion = 0.1");
+  const Scene scene = parse_scene(replaced(text, "density = 1200.0", "density = 1200.0\nhydrostatic = true"), "s.toml");
+  EXPECT_TRUE(scene.fluid.hydrostatic);
+  EXPECT_TRUE(scene.numerics.wall_support);
+  EXPECT_EQ(scene.numerics.density_diffusion, 0.1);
+  EXPECT_EQ(scene.boundaries[0].velocity[0], 0.1);
+  EXPECT_EQ(scene.boundaries[0].temperature, 30);
+  EXPECT_EQ(scene.boundaries[0].ground->diffusivity, 1e-6);
+  EXPECT_EQ(scene.boundaries[0].ground->thickness, 0.2);
+  EXPECT_FALSE(scene.boundaries[1].temperature);
+}
+
 TEST(SceneFile, PresetThenOverridesOfItsKeys) {
   const Numerics numerics = parse_scene(good, "s.toml").numerics;
   EXPECT_EQ(numerics.preset, "paiva");

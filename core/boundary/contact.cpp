@@ -104,6 +104,7 @@ template <int Dim> struct Contact<Dim>::Impl {
   double settle(Point<Dim>& x) const;
   bool push_out(Point<Dim>& x, const Near& near) const;
 
+  std::vector<Wall<Dim>> walls;    // without their vertices and facets
   std::vector<Response> response;  // by wall
   struct Plane {
     Point<Dim> point, normal;
@@ -116,7 +117,8 @@ template <int Dim> struct Contact<Dim>::Impl {
 };
 
 template <int Dim>
-Contact<Dim>::Impl::Impl(std::vector<Wall<Dim>> walls, double r, double cell) : surface(walls), radius(r) {
+Contact<Dim>::Impl::Impl(std::vector<Wall<Dim>> all, double r, double cell)
+    : walls(std::move(all)), surface(walls), radius(r) {
   double extent = surface.extent();
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const Wall<Dim>& wall = walls[w];
@@ -130,6 +132,7 @@ Contact<Dim>::Impl::Impl(std::vector<Wall<Dim>> walls, double r, double cell) : 
   if (!(r > 0) || !(cell > 0)) throw Error(ExitCode::geometry, "contact: the radius and the cell must be positive");
   skin = std::max(skin_ratio * r, skin_round_off * extent);
   grid = FacetGrid<Dim>(surface.facets(), r + 4 * skin, cell);
+  for (Wall<Dim>& wall : walls) wall.vertices = {}, wall.facets = {};
 }
 
 template <int Dim> bool Contact<Dim>::Impl::near_wall(const Point<Dim>& x, double reach) const {
@@ -292,6 +295,9 @@ template <int Dim> Contact<Dim>::Contact(Contact&&) noexcept = default;
 template <int Dim> Contact<Dim>& Contact<Dim>::operator=(Contact&&) noexcept = default;
 
 template <int Dim> bool Contact<Dim>::empty() const { return impl_->planes.empty() && impl_->surface.facets().empty(); }
+
+template <int Dim> const std::vector<Wall<Dim>>& Contact<Dim>::walls() const { return impl_->walls; }
+template <int Dim> const WallSurface<Dim>& Contact<Dim>::surface() const { return impl_->surface; }
 
 template <int Dim> int Contact<Dim>::move(Motion<Dim>& motion, double dt) const { return impl_->move(motion, dt); }
 

@@ -19,6 +19,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace molten {
@@ -31,6 +32,14 @@ struct Response {
   double slip = 0;         // what the tangential part keeps: 0 no-slip, 1 free slip
 };
 
+/// What a wall's surface is like to a fluid that it supports (wall_support.h).
+template <int Dim> struct WallSkin {
+  Point<Dim> velocity = Point<Dim>::Zero();  // m/s; along the wall: it does not move as a whole
+  std::optional<double> temperature;         // of the surface, or behind the layer; none: insulating
+  double layer_diffusivity = 0;              // m²/s, conductivity of a layer over ρ c_p of the fluid; 0: no layer
+  double layer_thickness = 0;                // m
+};
+
 /// A wall: facets (triangles in 3-D, segments in 2-D) or one infinite plane. One-sided: only particles on the side that
 /// the normals point to are held (segments: the normal is to the left of a → b; triangles: counter-clockwise).
 template <int Dim> struct Wall {
@@ -39,12 +48,15 @@ template <int Dim> struct Wall {
   bool is_plane = false;
   Point<Dim> plane_point = Point<Dim>::Zero(), plane_normal = Point<Dim>::Zero();  // m, unit
   Response response;
+  WallSkin<Dim> skin;
 };
 
 /// A particle in motion. `rate` is what moves the position (velocity, or velocity + XSPH); both are reflected at walls.
 template <int Dim> struct Motion {
   Point<Dim> position, velocity, rate;  // m, m/s, m/s
 };
+
+template <int Dim> class WallSurface;
 
 template <int Dim> class Contact {
  public:
@@ -56,6 +68,10 @@ template <int Dim> class Contact {
   Contact& operator=(Contact&&) noexcept;
 
   bool empty() const;  // no walls
+
+  /// The walls as given, less their vertices and facets, which are in the surface.
+  const std::vector<Wall<Dim>>& walls() const;
+  const WallSurface<Dim>& surface() const;
 
   /// Moves a particle by dt (s) along its rate, bouncing; a particle that overlaps a wall at the start is pushed out
   /// along the wall's normal. Returns how many bounces there were. A rate that is not finite moves it all the same.

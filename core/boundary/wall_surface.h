@@ -30,6 +30,9 @@ template <int Dim> class WallSurface {
   /// (Bærentzen and Aanæs 2005: its sign against x − nearest point is the side of x, if the mesh is closed). Not unit.
   Point<Dim> pseudo_normal(std::int32_t facet, Feature feature, int index) const;
 
+  /// The facet across edge k, −1 if there is none (3-D).
+  std::int32_t neighbour(std::int32_t facet, int k) const { return neighbour_[facet][k]; }
+
   /// The largest coordinate (m), for the size of round-off.
   double extent() const { return extent_; }
 

@@ -39,11 +39,17 @@ struct EquationOfState {
     const double density = rest_density * (1 + compression);
     return pressure(compression) / (density * density);
   }
-  /// The compression at which p is this (Pa), for hydrostatic starts.
+  /// The compression at which p is this (Pa).
   double compression(double pressure) const {
     const double stiffness = sound_speed * sound_speed * rest_density;
     if (kind != StateEquation::tait) return pressure / stiffness;
     return std::expm1(std::log1p(gamma * pressure / stiffness) / gamma);
+  }
+  /// The compression of a fluid at rest: dp = ρ dφ, p = 0 where φ = 0; φ = gravity times depth, m²/s².
+  double compression_at_rest(double potential) const {
+    const double part = potential / (sound_speed * sound_speed);
+    if (kind == StateEquation::linear || gamma == 1) return std::expm1(part);
+    return std::expm1(std::log1p((gamma - 1) * part) / (gamma - 1));
   }
 };
 

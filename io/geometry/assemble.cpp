@@ -171,6 +171,12 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
   for (const Boundary& boundary : scene.boundaries) {
     Wall<Dim> wall;
     wall.response = {boundary.restitution, boundary.slip};
+    for (int d = 0; d < Dim; ++d) wall.skin.velocity[d] = boundary.velocity[d];
+    wall.skin.temperature = boundary.temperature;
+    if (boundary.ground) {
+      wall.skin.layer_diffusivity = boundary.ground->diffusivity;
+      wall.skin.layer_thickness = boundary.ground->thickness;
+    }
     if (boundary.shape.plane) {
       wall.is_plane = true;
       for (int d = 0; d < Dim; ++d) {

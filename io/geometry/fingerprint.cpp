@@ -14,6 +14,10 @@ template <int Dim> void add_walls(Hash& hash, const Scene& scene, double spacing
     hash.add(wall.plane_normal.data(), Dim);
     hash.add(wall.response.restitution);
     hash.add(wall.response.slip);
+    hash.add(wall.skin.velocity.data(), Dim);
+    for (const double number :
+         {wall.skin.temperature.value_or(1e300), wall.skin.layer_diffusivity, wall.skin.layer_thickness})
+      hash.add(number);
   }
 }
 
@@ -24,9 +28,10 @@ void add_numerics(Hash& hash, const Numerics& n) {
   hash.add(static_cast<int>(n.integrator));
   hash.add(static_cast<int>(n.state_equation));
   hash.add(n.xsph ? 1 + static_cast<int>(n.xsph->form) : 0);
-  for (const double number : {n.smoothing_ratio, n.skin, n.gamma, n.sound_speed.value_or(0), n.artificial_viscosity,
-                              n.xsph ? n.xsph->epsilon : 0, n.courant_sound, n.courant_viscous, n.courant_force,
-                              n.courant_conduction, n.fixed_dt.value_or(0)})
+  for (const double number :
+       {n.smoothing_ratio, n.skin, n.gamma, n.sound_speed.value_or(0), n.artificial_viscosity,
+        n.xsph ? n.xsph->epsilon : 0, n.courant_sound, n.courant_viscous, n.courant_force, n.courant_conduction,
+        n.fixed_dt.value_or(0), n.density_diffusion, n.wall_support ? 1.0 : 0.0})
     hash.add(number);
 }
 
@@ -41,8 +46,9 @@ std::string fingerprint(const Scene& scene, const Start& start) {
   hash.add(start.temperature.data(), start.temperature.size());
   const Rheology& r = scene.fluid.rheology;
   hash.add(static_cast<int>(r.model));
-  for (const double number : {scene.fluid.density, r.viscosity, r.flow_index, r.jump_number[0], r.jump_number[1],
-                              r.yield_stress, r.consistency, scene.gravity[0], scene.gravity[1], scene.gravity[2]})
+  for (const double number :
+       {scene.fluid.density, r.viscosity, r.flow_index, r.jump_number[0], r.jump_number[1], r.yield_stress,
+        r.consistency, scene.gravity[0], scene.gravity[1], scene.gravity[2], scene.fluid.hydrostatic ? 1.0 : 0.0})
     hash.add(number);
   if (scene.fluid.heat) {
     hash.add(scene.fluid.heat->diffusivity);

@@ -65,6 +65,30 @@ void read_head(const TomlReader& root, Scene& scene) {
 
 // ---- [[boundary]] ----
 
+void read_ground(const TomlReader& keys, Boundary& boundary) {
+  const auto ground = keys.table("ground", {"diffusivity", "thickness"});
+  if (!ground) return;
+  if (!boundary.temperature) keys.fail("ground", "leads to no temperature; add temperature, that below the layer");
+  GroundLayer layer;
+  ground->require("diffusivity", "give conductivity / (density × heat capacity of the fluid) in m²/s");
+  ground->number("diffusivity", layer.diffusivity, Range::positive("m²/s"));
+  ground->require("thickness", "give the depth in m at which the ground has the temperature");
+  ground->number("thickness", layer.thickness, Range::positive("m"));
+  boundary.ground = layer;
+}
+
+/// What only walls with support do.
+void require_support(const TomlReader& keys, const Boundary& boundary, const Scene& scene) {
+  for (const std::string_view key : {"velocity", "temperature"})
+    if (keys.has(key) && !scene.numerics.wall_support)
+      keys.fail(key, "has no effect without wall support; add numerics.wall_support = true");
+  if (boundary.temperature && !scene.fluid.heat) keys.fail("temperature", "needs heat; add [fluid.heat]");
+}
+
+TomlReader::Keys boundary_keys() {
+  return with_shape_keys({"inside", "slip", "restitution", "velocity", "temperature", "ground"});
+}
+
 Boundary read_boundary(const TomlReader& keys, int dimensions) {
   Boundary boundary;
   boundary.shape = read_shape(keys, dimensions, ShapeUse::boundary);
@@ -74,6 +98,9 @@ Boundary read_boundary(const TomlReader& keys, int dimensions) {
   }
   keys.number("slip", boundary.slip, Range::fraction());
   keys.number("restitution", boundary.restitution, Range::fraction());
+  keys.numbers("velocity", std::span(boundary.velocity).first(static_cast<std::size_t>(dimensions)), Range::any("m/s"));
+  keys.number("temperature", boundary.temperature, Range::any("the scene's temperature unit"));
+  read_ground(keys, boundary);
   return boundary;
 }
 
@@ -152,12 +179,13 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   scene.text = document.text;
   read_head(root, scene);
   scene.fluid = read_fluid(root, scene.dimensions);
-  for (const TomlReader& keys : root.tables("boundary", with_shape_keys({"inside", "slip", "restitution"}))) {
+  scene.numerics = read_numerics(root);
+  for (const TomlReader& keys : root.tables("boundary", boundary_keys())) {
     scene.boundaries.push_back(read_boundary(keys, scene.dimensions));
+    require_support(keys, scene.boundaries.back(), scene);
   }
   scene.run = read_run(root);
   scene.output = read_output(root);
-  scene.numerics = read_numerics(root);
   return scene;
 }
 

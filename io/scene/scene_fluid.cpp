@@ -222,13 +222,14 @@ void check_melting(const TomlReader& keys, const Fluid& fluid) {
 
 Fluid read_fluid(const TomlReader& root, int dimensions) {
   root.require("fluid", "add [fluid] with a shape and particles or spacing");
-  const TomlReader keys = *root.table(
-      "fluid", with_shape_keys({"body", "particles", "spacing", "density", "velocity", "rheology", "heat"}));
+  const TomlReader keys = *root.table("fluid", with_shape_keys({"body", "particles", "spacing", "density", "velocity",
+                                                                "hydrostatic", "rheology", "heat"}));
   Fluid fluid;
   fluid.place = keys.place();
   fluid.bodies = read_bodies(keys, dimensions);
   read_amount(keys, fluid);
   keys.number("density", fluid.density, Range::positive("kg/m³"));
+  keys.flag("hydrostatic", fluid.hydrostatic);
   fluid.rheology = read_rheology(keys);
   bool all_have_temperature = true;
   for (const Body& body : fluid.bodies) all_have_temperature = all_have_temperature && body.temperature.has_value();

@@ -31,7 +31,9 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "half_pressure",
                                         "energy_surplus",
                                         "density_kernel",
-                                        "stiffness"};
+                                        "stiffness",
+                                        "wall_support",
+                                        "density_diffusion"};
 
 Numerics read_preset(const TomlReader& keys) {
   std::string name = "molten";
@@ -179,6 +181,8 @@ Numerics read_numerics(const TomlReader& root) {
   keys->flag("gradient_correction", numerics.gradient_correction);
   read_shifting(*keys, numerics);
   read_courant(*keys, numerics);
+  keys->flag("wall_support", numerics.wall_support);
+  keys->number("density_diffusion", numerics.density_diffusion, Range{0, 1, true, ""});
   keys->number("fixed_dt", numerics.fixed_dt, Range::positive("s"));
   return numerics;
 }

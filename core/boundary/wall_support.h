@@ -1,0 +1,42 @@
+// What walls add to the sums of the particles near them, straight from the mesh, without boundary particles
+// (wall_terms.h has the formulas): the walls' integrals, and which of them each cluster may reach before the next sort.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/archive.h"
+#include "core/boundary/contact.h"
+#include "core/parameters.h"
+#include "core/particles.h"
+
+namespace molten {
+
+template <int Dim> class WallIntegrals;
+
+template <int Dim> class WallSupport {
+ public:
+  WallSupport() = default;
+  WallSupport(const Contact<Dim>& contact, const Parameters<Dim>& parameters);
+
+  template <class Real> void mark(const Particles<Dim, Real>& particles);
+
+  /// What the cluster may reach: the number of a plane, or one of the two below.
+  std::int32_t plane(std::size_t cluster) const { return plane_.empty() ? no_plane : plane_[cluster]; }
+  static constexpr std::int32_t no_plane = -1, many_planes = -2;
+
+  const WallIntegrals<Dim>& integrals() const { return *integrals_; }
+  const Wall<Dim>& wall(std::int32_t number) const { return walls_[static_cast<std::size_t>(number)]; }
+
+  void archive(Archive& a) { a.vector("neighbours/wall_plane", plane_); }
+  std::size_t bytes() const;
+
+ private:
+  std::shared_ptr<const WallIntegrals<Dim>> integrals_;
+  std::vector<Wall<Dim>> walls_;  // without their facets
+  std::vector<std::int32_t> plane_;
+  double reach_ = 0;  // m, of the support until the next sort
+};
+
+}  // namespace molten

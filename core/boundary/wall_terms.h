@@ -1,0 +1,259 @@
+// The walls' share of a pair pass. A piece s of a wall goes through the terms as one neighbour behind its plane, with
+// ∫_solid ∇W dV = −∫_s W n dS (Gauss; Chiron et al. 2019) in the place of V_j ∇W_ij and the values of the fluid at the
+// wall. With h_s = ∫_solid W dV behind the piece and y_s the centroid of W over it, from the particle:
+// - Pressure: what a mirrored hydrostatic fluid behind the wall gives, p_s = p_i + ρ g·(y_s − n h_s/∫_s W dS), exact
+// for
+//   pressures linear along n.
+// - Continuity: the mirrored velocity, so twice (v_i − v_wall)·n. These two are each other's adjoint, so that walls do
+//   not feed sound waves: with the renormalised form of Ferrand et al. 2013, which is not, a tank at rest keeps 300
+//   times the kinetic energy, and without density diffusion it does not come to rest at all.
+// - Along the wall a particle misses the part h of its support: its acceleration is multiplied by
+//   (1 − Σ h_s (1 − n n))^−1. Sums for temperature and strain rate are divided by 1 − Σ h_s (Ferrand et al. 2013),
+//   which makes them exact for linear fields, and the viscous and heat fluxes for quadratic ones, at a plane.
+#pragma once
+
+#include <Eigen/LU>
+#include <tuple>
+
+#include "core/boundary/wall_integrals.h"
+#include "core/boundary/wall_support.h"
+#include "core/pair_pass.h"
+
+namespace molten {
+namespace wall_terms_detail {
+
+constexpr double most_hidden = 0.9;  // in a cleft that hardly leaves room to the fluid
+
+/// A piece of a wall as the neighbour of the particles in the lanes of L.
+template <int Dim, class L> struct WallNeighbour {
+  Vec<Dim, L> normal, there;  // there: where p_s is hydrostatic, from the particle, m
+  L reach, weight, hidden;    // m, 1/m, 1; reach: of the neighbour, straight along the normal
+};
+
+template <int Dim, class Real> WallNeighbour<Dim, Lanes<Real, 1>> neighbour_of(const WallPatch<Dim>& patch) {
+  using L = Lanes<Real, 1>;
+  // Further off where the piece is aside: fluxes go by the slope along the normal, (n · y)/y² for a piece at y.
+  const double aside = patch.centroid.norm();
+  WallNeighbour<Dim, L> n;
+  for (int k = 0; k < Dim; ++k) {
+    n.normal[k] = L(static_cast<Real>(patch.normal[k]));
+    n.there[k] = L(static_cast<Real>(patch.centroid[k] - patch.hidden / patch.weight * patch.normal[k]));
+  }
+  n.reach = L(static_cast<Real>(aside * aside / std::max(patch.distance, 0.1 * aside)));
+  n.weight = L(static_cast<Real>(patch.weight));
+  n.hidden = L(static_cast<Real>(patch.hidden));
+  return n;
+}
+
+template <int I, int Dim, class Real, class... F>
+Values<FieldList<F...>, Dim, Lanes<Real, I>> load_own(const Particles<Dim, Real>& particles, std::size_t slot,
+                                                      FieldList<F...>) {
+  Values<FieldList<F...>, Dim, Lanes<Real, I>> v;
+  const auto one = [&]<class G>(G) {
+    const auto column = particles[G{}];
+    unrolled<components<G, Dim>>(
+        [&](auto k) { component(v[G{}], k) = column[k] ? load<I>(column[k] + slot) : Lanes<Real, I>(Real(0)); });
+  };
+  (one(F{}), ...);
+  return v;
+}
+
+}  // namespace wall_terms_detail
+
+/// A finish of a pair pass that adds the walls' share first. Terms of the pass with an `at_walls` do not concern walls.
+template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
+  template <class L> using Neighbour = wall_terms_detail::WallNeighbour<Dim, L>;
+  using Reads = typename UnionOf<FieldList<Compression>, typename Terms::Reads...>::type;
+  using Radial = typename UnionOf<typename pair_pass_detail::RadialOf<Terms>::type...>::type;
+
+ public:
+  WithWalls(const WallSupport<Dim>& walls, const Parameters<Dim>& parameters, const Particles<Dim, Real>& particles,
+            const Finish& finish, const Terms&... terms)
+      : walls_(walls), parameters_(parameters), particles_(particles), finish_(finish), terms_(terms...) {}
+
+  auto for_chunk(std::size_t number) const {
+    return [this, inner = finish_.for_chunk(number)](std::size_t slot, const auto& sums) mutable {
+      const std::int32_t plane = walls_.plane(slot / cluster_size);
+      if (plane == WallSupport<Dim>::no_plane) return inner(slot, sums);
+      auto whole = sums;
+      plane == WallSupport<Dim>::many_planes ? add_many(slot, whole) : add_plane(slot, plane, whole);
+      inner(slot, whole);
+    };
+  }
+
+ private:
+  /// One plane that ends nowhere near: all lanes at once.
+  template <class... F, int I>
+  [[gnu::noinline]] void add_plane(std::size_t slot, std::int32_t plane,
+                                   Values<FieldList<F...>, Dim, Lanes<Real, I>>& sums) const {
+    using L = Lanes<Real, I>;
+    Neighbour<L> n;
+    const std::int32_t wall = from_plane<I>(slot, plane, n);
+    Values<FieldList<F...>, Dim, L> walls;
+    pair_pass_detail::clear(walls);
+    add_neighbour(n, walls_.wall(wall), wall_terms_detail::load_own<I>(particles_, slot, Reads{}), walls);
+    const L along = reciprocal(L(Real(1)) - n.hidden);
+    (join(F{}, sums[F{}], walls[F{}], along,
+          [&](const Vec<Dim, L>& a) {
+            const Vec<Dim, L> across = dot(a, n.normal) * n.normal;
+            return across + along * (a - across);
+          }),
+     ...);
+  }
+
+  template <int I> std::int32_t from_plane(std::size_t slot, std::int32_t plane, Neighbour<Lanes<Real, I>>& n) const {
+    using L = Lanes<Real, I>;
+    const auto x = particles_[position];
+    Point<Dim> normal = Point<Dim>::Zero();
+    std::int32_t wall = 0;
+    L to_there(Real(0));
+    n.weight = n.hidden = L(Real(0));
+    n.reach = L(Real(1));
+    for (int k = 0; k < I; ++k) {
+      Point<Dim> point;
+      for (int d = 0; d < Dim; ++d) point[d] = x[d][slot + k];
+      const auto hit = walls_.integrals().at_plane(plane, point);
+      normal = hit.normal, wall = hit.wall;
+      if (!(hit.weight > 0)) continue;
+      set_lane(n.weight, k, static_cast<Real>(hit.weight));
+      set_lane(n.hidden, k, static_cast<Real>(hit.hidden));
+      set_lane(n.reach, k, static_cast<Real>(hit.distance));
+      set_lane(to_there, k, static_cast<Real>(hit.distance + hit.hidden / hit.weight));
+    }
+    for (int d = 0; d < Dim; ++d) {
+      n.normal[d] = L(static_cast<Real>(normal[d]));
+      n.there[d] = -(to_there * n.normal[d]);
+    }
+    return wall;
+  }
+
+  /// Corners, edges, curved walls: particle by particle.
+  template <class... F, int I>
+  [[gnu::noinline]] void add_many(std::size_t slot, Values<FieldList<F...>, Dim, Lanes<Real, I>>& sums) const {
+    for (int k = 0; k < I; ++k) {
+      if (particles_.is_padding(slot + k)) continue;
+      Values<FieldList<F...>, Dim, Lanes<Real, 1>> own;
+      (unrolled<components<F, Dim>>(
+           [&](auto c) { component(own[F{}], c) = Lanes<Real, 1>(lane(component(sums[F{}], c), k)); }),
+       ...);
+      add_many_to_one(slot + k, own);
+      (unrolled<components<F, Dim>>(
+           [&](auto c) { set_lane(component(sums[F{}], c), k, lane(component(own[F{}], c), 0)); }),
+       ...);
+    }
+  }
+
+  template <class... F>
+  void add_many_to_one(std::size_t slot, Values<FieldList<F...>, Dim, Lanes<Real, 1>>& sums) const {
+    using L = Lanes<Real, 1>;
+    using Matrix = Eigen::Matrix<double, Dim, Dim>;
+    const auto own = wall_terms_detail::load_own<1>(particles_, slot, Reads{});
+    Values<FieldList<F...>, Dim, L> walls;
+    pair_pass_detail::clear(walls);
+    double hidden = 0;
+    Matrix along = Matrix::Zero();  // Σ h (1 − n n)
+    Point<Dim> x;
+    for (int d = 0; d < Dim; ++d) x[d] = particles_[position][d][slot];
+    walls_.integrals().visit(x, [&](const WallPatch<Dim>& patch) {
+      add_neighbour(wall_terms_detail::neighbour_of<Dim, Real>(patch), walls_.wall(patch.wall), own, walls);
+      hidden += patch.hidden;
+      along += patch.hidden * (Matrix::Identity() - patch.normal * patch.normal.transpose());
+    });
+    const double limited = std::min(hidden, wall_terms_detail::most_hidden);
+    if (hidden > limited) along *= limited / hidden;
+    (join(F{}, sums[F{}], walls[F{}], L(static_cast<Real>(1 / (1 - limited))),
+          [&](const Vec<Dim, L>& a) {
+            Point<Dim> b;
+            for (int d = 0; d < Dim; ++d) b[d] = lane(a[d], 0);
+            b = (Matrix::Identity() - along).inverse() * b;
+            Vec<Dim, L> c;
+            for (int d = 0; d < Dim; ++d) c[d] = L(static_cast<Real>(b[d]));
+            return c;
+          }),
+     ...);
+  }
+
+  /// What the terms make of one neighbour.
+  template <class L, class Own, class Sums>
+  void add_neighbour(const Neighbour<L>& n, const Wall<Dim>& wall, const Own& i, Sums& sums) const {
+    Pair<Dim, L> ij;
+    ij.x = n.reach * n.normal;
+    ij.r2 = n.reach * n.reach;
+    const L density = L(static_cast<Real>(parameters_.eos.rest_density)) * (L(Real(1)) + i[compression]);
+    const ShapeAndSlope<L> kernel{L(Real(0)), -(density * n.weight) / n.reach};
+    const auto j = at_wall(n, wall, i, Reads{});
+    pair_pass_detail::Out<typename Sums::List, Radial, Dim, L> out{sums, kernel, {}};
+    pair_pass_detail::clear(out.radial);
+    const auto add = [&]<class Term>(const Term& term) {
+      if constexpr (!requires { Term::at_walls; })
+        if (term.on) term(ij, i, j, out);
+    };
+    std::apply([&](const Terms&... term) { (add(term), ...); }, terms_);
+    out.add_radial(Radial{}, ij.x);
+  }
+
+  // ---- the fields of the fluid at a wall, from those of the particle
+  // --------------------------------------------------
+
+  template <class L, class Own, class... F>
+  Values<FieldList<F...>, Dim, L> at_wall(const Neighbour<L>& n, const Wall<Dim>& wall, const Own& i,
+                                          FieldList<F...>) const {
+    Values<FieldList<F...>, Dim, L> values;
+    ((values[F{}] = at_wall(F{}, n, wall, i)), ...);
+    return values;
+  }
+  template <class F, class L, class Own>
+  auto at_wall(F field, const Neighbour<L>&, const Wall<Dim>&, const Own& i) const {
+    return i[field];
+  }
+  template <class L, class Own>
+  Vec<Dim, L> at_wall(Velocity, const Neighbour<L>& n, const Wall<Dim>& wall, const Own& i) const {
+    Vec<Dim, L> own;
+    for (int d = 0; d < Dim; ++d) own[d] = L(static_cast<Real>(wall.skin.velocity[d]));
+    const Vec<Dim, L> beyond = i[velocity] - own;
+    return own + L(static_cast<Real>(wall.response.slip)) * (beyond - dot(beyond, n.normal) * n.normal);
+  }
+  template <class L, class Own> L at_wall(PressureTerm, const Neighbour<L>& n, const Wall<Dim>&, const Own& i) const {
+    Vec<Dim, L> gravity;
+    for (int d = 0; d < Dim; ++d) gravity[d] = L(static_cast<Real>(parameters_.gravity[d]));
+    const L density = L(static_cast<Real>(parameters_.eos.rest_density)) * (L(Real(1)) + i[compression]);
+    return i[pressure_term] + dot(gravity, n.there) / density;
+  }
+  template <class L, class Own>
+  L at_wall(LocalTemperature, const Neighbour<L>& n, const Wall<Dim>& wall, const Own& i) const {
+    const WallSkin<Dim>& skin = wall.skin;
+    if (!skin.temperature) return i[local_temperature];
+    const L there(static_cast<Real>(*skin.temperature - parameters_.reference_temperature));
+    if (skin.layer_diffusivity <= 0) return there;
+    // The flux through the layer is that through the fluid: k (T_i − T)/reach = k_l (T − T_behind)/thickness.
+    const L layer(static_cast<Real>(skin.layer_diffusivity / skin.layer_thickness));
+    const L own = L(static_cast<Real>(parameters_.diffusivity)) / n.reach;
+    return (own * i[local_temperature] + layer * there) / (own + layer);
+  }
+
+  // ---- how the sums over the fluid and over the walls become one
+  // ------------------------------------------------------
+
+  template <class L, class Along> static void join(CompressionRate, L& sum, const L& walls, const L&, const Along&) {
+    sum += L(Real(2)) * walls;
+  }
+  template <class L, class Along>  // a sum of W, not of ∇W
+  static void join(XsphVelocity, Vec<Dim, L>&, const Vec<Dim, L>&, const L&, const Along&) {}
+  template <class L, class Along>
+  static void join(Acceleration, Vec<Dim, L>& sum, const Vec<Dim, L>& walls, const L&, const Along& along) {
+    sum = along(sum + walls);
+  }
+  template <class F, class V, class L, class Along>
+  static void join(F, V& sum, const V& walls, const L& whole, const Along&) {
+    unrolled<components<F, Dim>>(
+        [&](auto k) { component(sum, k) = whole * (component(sum, k) + component(walls, k)); });
+  }
+
+  const WallSupport<Dim>& walls_;
+  const Parameters<Dim>& parameters_;
+  const Particles<Dim, Real>& particles_;
+  const Finish& finish_;
+  std::tuple<const Terms&...> terms_;
+};
+
+}  // namespace molten

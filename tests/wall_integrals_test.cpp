@@ -1,0 +1,192 @@
+// Integrals of the kernel over walls against brute-force sums over the solid, in corners, at ridges and over tilted
+// meshes.
+#include "core/boundary/wall_integrals.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "core/boundary/shapes.h"
+#include "core/kernel.h"
+
+namespace molten {
+namespace {
+
+constexpr double smoothing_length = 1.3, reach = 2 * smoothing_length;
+
+template <int Dim> struct Integrals {
+  double hidden = 0;                         // ∫_solid W dV
+  Point<Dim> gradient = Point<Dim>::Zero();  // −∫_solid ∇W dV
+};
+
+template <int Dim> WallIntegrals<Dim> integrals_of(const std::vector<Wall<Dim>>& walls) {
+  return {walls, WallSurface<Dim>(walls), KernelKind::wendland_c2, smoothing_length};
+}
+
+template <int Dim> Integrals<Dim> sum(const WallIntegrals<Dim>& walls, const Point<Dim>& x) {
+  Integrals<Dim> all;
+  walls.visit(x, [&](const WallPatch<Dim>& patch) {
+    all.hidden += patch.hidden;
+    all.gradient += patch.weight * patch.normal;
+    EXPECT_LT(patch.centroid.norm(), reach);
+    EXPECT_NEAR(patch.centroid.dot(patch.normal), -patch.distance, 1e-9);
+  });
+  return all;
+}
+
+/// Midpoint rule; `cells` per axis, whose sides the walls should meet.
+template <int Dim> Integrals<Dim> brute(const Point<Dim>& x, const std::function<bool(Point<Dim>)>& solid, int cells) {
+  const Kernel<KernelChoice::wendland_c2, double> kernel(KernelKind::wendland_c2, Dim, smoothing_length, 1);
+  const double size = 2 * reach / cells;
+  Integrals<Dim> all;
+  for (long k = 0; k < std::lround(std::pow(cells, Dim)); ++k) {
+    Point<Dim> y;
+    long rest = k;
+    for (int d = 0; d < Dim; ++d, rest /= cells) y[d] = -reach + (rest % cells + 0.5) * size;
+    if (y.norm() >= reach || !solid(Point<Dim>(x + y))) continue;
+    const auto w = kernel(Lanes<double, 1>(y.norm()));
+    all.hidden += w.w.v * std::pow(size, Dim);
+    all.gradient += w.slope.v * y * std::pow(size, Dim);  // ∇ by the particle's position is −slope y
+  }
+  return all;
+}
+
+template <int Dim>
+void expect_as_brute(const std::vector<Wall<Dim>>& walls, const Point<Dim>& x,
+                     const std::function<bool(Point<Dim>)>& solid) {
+  const auto ours = sum(integrals_of(walls), x);
+  const auto twin = brute<Dim>(x, solid, Dim == 2 ? 1300 : 130);
+  const double tolerance = Dim == 2 ? 1e-3 : 5e-4;
+  EXPECT_NEAR(ours.hidden, twin.hidden, tolerance) << x.transpose();
+  EXPECT_LT((ours.gradient - twin.gradient).norm(), 2 * tolerance) << x.transpose();
+}
+
+Wall<2> loop(const std::vector<Point<2>>& corners) {
+  Wall<2> wall;
+  wall.vertices = corners;
+  const auto n = static_cast<std::int32_t>(corners.size());
+  for (std::int32_t k = 0; k < n; ++k) wall.facets.push_back({k, (k + 1) % n});
+  return wall;
+}
+
+template <int Dim> Wall<Dim> plane(const Point<Dim>& point, const Point<Dim>& normal) {
+  Wall<Dim> wall;
+  wall.is_plane = true;
+  wall.plane_point = point;
+  wall.plane_normal = normal.normalized();
+  return wall;
+}
+
+Wall<3> container(const Shape& shape, double edge) {
+  TriangleMesh mesh = tessellate(shape, edge);
+  Wall<3> wall;
+  wall.vertices = mesh.vertices;
+  for (const auto& t : mesh.triangles) wall.facets.push_back({t[0], t[2], t[1]});
+  return wall;
+}
+
+Wall<3> box_container() {
+  Shape shape;
+  shape.box = Box{{0, 0, 0}, {10, 10, 10}};
+  return container(shape, 100);
+}
+
+const auto outside_square = [](Point<2> y) { return y.minCoeff() < 0 || y.maxCoeff() > 10; };
+const auto outside_cube = [](Point<3> y) { return y.minCoeff() < 0 || y.maxCoeff() > 10; };
+
+TEST(WallIntegrals, InsideASquare) {
+  const std::vector<Wall<2>> walls{loop({{0, 0}, {10, 0}, {10, 10}, {0, 10}})};
+  for (const Point<2>& x : {Point<2>(5, 0.5), Point<2>(5, 0.2), Point<2>(0.5, 0.5), Point<2>(8.9, 9.6)})
+    expect_as_brute<2>(walls, x, outside_square);
+}
+
+TEST(WallIntegrals, PlanesEndWhereTheyMeet) {
+  const std::vector<Wall<2>> walls{plane<2>({0, 0}, {0, 1}), plane<2>({0, 0}, {1, 0})};
+  for (const Point<2>& x : {Point<2>(5, 0.5), Point<2>(0.5, 0.5), Point<2>(1.3, 0.4)})
+    expect_as_brute<2>(walls, x, outside_square);
+  std::vector<Wall<3>> three;
+  for (int k = 0; k < 3; ++k) three.push_back(plane<3>(Point<3>::Zero(), Point<3>::Unit(k)));
+  for (const Point<3>& x : {Point<3>(5, 4, 0.52), Point<3>(0.52, 0.6, 0.72), Point<3>(1.32, 5, 0.4)})
+    expect_as_brute<3>(three, x, outside_cube);
+}
+
+TEST(WallIntegrals, OverARidge) {
+  const std::vector<Wall<2>> walls{loop({{0, 0}, {0, 10}, {10, 10}, {10, 0}})};  // clockwise: the fluid is outside
+  const auto inside = [](Point<2> y) { return !outside_square(y); };
+  for (const Point<2>& x : {Point<2>(-0.5, 5), Point<2>(-0.4, -0.3), Point<2>(10.1, 9.2)})
+    expect_as_brute<2>(walls, x, inside);
+}
+
+TEST(WallIntegrals, InsideABox) {
+  for (const Point<3> x :
+       {Point<3>(5, 5, 0.52), Point<3>(0.52, 0.6, 0.72), Point<3>(1.32, 5, 0.4), Point<3>(8, 9, 9.48)})
+    expect_as_brute<3>({box_container()}, x, outside_cube);
+}
+
+TEST(WallIntegrals, InsideARoundedMeshOfManyTriangles) {
+  Shape shape;
+  shape.sphere = Sphere{{0, 0, 0}, 6};
+  const std::vector<Wall<3>> walls{container(shape, 0.8)};
+  ASSERT_GT(walls[0].facets.size(), 500U);
+  const auto outside = [](Point<3> y) { return y.norm() > 5.97; };  // the facets lie a little inside the sphere
+  for (const Point<3>& x : {Point<3>(0, 0, -5.3), Point<3>(3, 3.2, 2.6)}) {
+    const auto ours = sum(integrals_of(walls), x);
+    const auto twin = brute<3>(x, outside, 130);
+    EXPECT_NEAR(ours.hidden, twin.hidden, 0.01);
+    EXPECT_LT((ours.gradient - twin.gradient).norm(), 0.02);
+  }
+}
+
+TEST(WallIntegrals, AClosedSurfaceHidesAllOfItsInside) {
+  Shape shape;
+  shape.sphere = Sphere{{0, 0, 0}, 1};
+  const TriangleMesh mesh = tessellate(shape, 0.3);
+  Wall<3> wall;
+  wall.vertices = mesh.vertices;
+  wall.facets = mesh.triangles;
+  const auto ours = sum(integrals_of<3>({wall}), Point<3>(0, 0, 1.5));
+  const auto twin = brute<3>(
+      {0, 0, 1.5}, [](Point<3> y) { return y.norm() < 0.985; }, 130);
+  EXPECT_NEAR(ours.hidden, twin.hidden, 0.003);
+  EXPECT_LT((ours.gradient - twin.gradient).norm(), 0.01);
+}
+
+TEST(WallIntegrals, TheShortWayIsTheLongOne) {
+  const auto walls = integrals_of<3>({box_container()});
+  for (const double d : {0.05, 0.5, 1.7, 2.5}) {
+    const Point<3> x(5, 4.3, d);
+    const std::int32_t plane = walls.plane_near(x, reach);
+    ASSERT_GE(plane, 0);
+    const WallPatch<3> quick = walls.at_plane(plane, x);
+    walls.visit(x, [&](const WallPatch<3>& exact) {
+      EXPECT_NEAR(quick.weight, exact.weight, 1e-5);
+      EXPECT_NEAR(quick.hidden, exact.hidden, 1e-5);
+      EXPECT_LT((quick.centroid - exact.centroid).norm(), 1e-4);
+    });
+  }
+}
+
+TEST(WallIntegrals, TellWhichWallsAreNear) {
+  using Walls = WallIntegrals<3>;
+  const auto walls = integrals_of<3>({box_container()});
+  EXPECT_EQ(walls.plane_near({5, 5, 5}, reach), Walls::no_plane);
+  EXPECT_EQ(walls.plane_near({5, 2.5, 1}, reach), Walls::many_planes);
+  EXPECT_NE(walls.plane_near({5, 5, 1}, reach), walls.plane_near({5, 1, 5}, reach));
+  EXPECT_GE(walls.plane_near({5, 5, 2.59}, reach), 0);
+  EXPECT_EQ(walls.plane_near({5, 5, 2.61}, reach), Walls::no_plane);
+}
+
+TEST(WallIntegrals, EveryKernel) {
+  for (const auto kind : {KernelKind::quadratic, KernelKind::cubic_spline, KernelKind::lucy, KernelKind::poly6})
+    for (const int dim : {2, 3}) {
+      const RadialIntegrals radial(kind, dim, 1);
+      EXPECT_NEAR(radial.plane_hidden(0), 0.5, 2e-3) << static_cast<int>(kind) << ' ' << dim;
+      // Planes stacked from here to the end hide what is behind the first.
+      double hidden = 0;
+      for (double d = 0.205; d < radial.reach(); d += 0.01) hidden += 0.01 * radial.plane_weight(d);
+      EXPECT_NEAR(radial.plane_hidden(0.2), hidden, 2e-3) << static_cast<int>(kind) << ' ' << dim;
+    }
+}
+
+}  // namespace
+}  // namespace molten
