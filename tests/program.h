@@ -28,9 +28,10 @@ struct Outcome {
 /// The program under way. Its output goes to two files in a folder of its own.
 class Program {
  public:
-  explicit Program(const std::vector<std::string>& arguments, const std::filesystem::path& working = {}) {
+  explicit Program(const std::vector<std::string>& arguments, const std::filesystem::path& working = {},
+                   const char* file = MOLTEN_PROGRAM) {
     child_ = fork();
-    if (child_ == 0) become(arguments, working);
+    if (child_ == 0) become(file, arguments, working);
   }
   ~Program() {
     if (child_ > 0) kill(SIGKILL), wait();
@@ -61,7 +62,8 @@ class Program {
   }
 
  private:
-  [[noreturn]] void become(const std::vector<std::string>& arguments, const std::filesystem::path& working) {
+  [[noreturn]] void become(const char* file, const std::vector<std::string>& arguments,
+                           const std::filesystem::path& working) {
     const int out = open((folder_.path() / "out").c_str(), O_WRONLY | O_CREAT, 0600);
     const int err = open((folder_.path() / "err").c_str(), O_WRONLY | O_CREAT, 0600);
     const int in = open("/dev/null", O_RDONLY);
@@ -69,10 +71,10 @@ class Program {
     // Small runs: one thread unless a test says otherwise, so that a busy machine does not slow them.
     setenv("OMP_NUM_THREADS", "1", 1);
     if (!working.empty() && chdir(working.c_str()) != 0) _exit(126);
-    std::vector<char*> argv{const_cast<char*>(MOLTEN_PROGRAM)};
+    std::vector<char*> argv{const_cast<char*>(file)};
     for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
     argv.push_back(nullptr);
-    execv(MOLTEN_PROGRAM, argv.data());
+    execv(file, argv.data());
     _exit(127);
   }
 

@@ -1,0 +1,26 @@
+// Steady flow of generalised Newtonian fluids between parallel walls, half a gap of 1 apart from the middle: exact
+// profiles by quadrature.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace molten::study {
+
+/// Velocity over y from the middle (0) to the wall (1) of a fluid whose shear stress is τ_w y: the strain rate that
+/// carries it, integrated from the wall. `stress_of` rises with the strain rate.
+class ChannelProfile {
+ public:
+  ChannelProfile(const std::function<double(double)>& stress_of, double wall_stress);
+
+  double at(double y) const;
+  double mean() const;
+
+ private:
+  std::vector<double> velocity_;
+};
+
+/// Shear stress of the SMD fluid in units of τ0 over the strain rate in units of γ̇1 ([P] 6-1).
+double smd_stress(double strain, double jump_number, double flow_index);
+
+}  // namespace molten::study

@@ -1,0 +1,51 @@
+#include "bench/study/dam_break.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/study/particles.h"
+#include "bench/study/scene_text.h"
+
+namespace molten::study {
+
+constexpr double gravity = 9.81, density = 1000;
+
+Setup dam_break(const DamBreak& d) {
+  const int up = d.dimensions - 1;
+  Triple g{};
+  g[up] = -gravity;
+  // A column that is not a whole number of spacings gets the nearest.
+  Triple size{};
+  for (int k = 0; k < d.dimensions; ++k) size[k] = std::round(d.column[k] / d.spacing) * d.spacing;
+  Setup s;
+  s.scene = scene_head(d.dimensions, g) + fluid_text(d.dimensions, d.spacing, density) +
+            fmt::format("[[boundary]]\nbox = {}\ninside = true\nslip = {:.17g}\n", box_text(d.dimensions, {}, d.tank),
+                        d.slip);
+  s.start = lattice(d.dimensions, {}, size, d.spacing);
+  for (const Triple& x : s.start.position) s.pressure.push_back(density * gravity * (size[up] - x[up]));
+  return s;
+}
+
+double front_of(const Cloud& cloud) {
+  std::vector<double> x;
+  for (const Triple& place : cloud.position) x.push_back(place[0]);
+  const auto fifth = x.begin() + std::min<std::ptrdiff_t>(4, std::ssize(x) - 1);
+  std::nth_element(x.begin(), fifth, x.end(), std::greater<>());
+  return *fifth + cloud.spacing / 2;
+}
+
+void expect_series(Report& report, const std::string& name, double raw_reach, double shifted_reach) {
+  report.expect(name + "_raw", raw_reach);
+  report.expect(name + "_shifted", shifted_reach);
+  report.expect(name + "_time_shift", no_reach);
+}
+
+void judge_series(Report& report, const std::string& name, const Series& run, const Series& experiment) {
+  const double duration = experiment.at.back();
+  const double shift = best_shift(run, experiment, 0.3 * duration);
+  report.judge(name + "_raw", relative_rms(run, experiment));
+  report.judge(name + "_shifted", relative_rms(run, experiment, shift));
+  report.judge(name + "_time_shift", shift / duration);
+}
+
+}  // namespace molten::study

@@ -1,0 +1,27 @@
+// Columns of water that collapse in a tank, in 2-D and 3-D; the column stands against the wall at x = 0.
+#pragma once
+
+#include "bench/study/metrics.h"
+#include "bench/study/simulation.h"
+
+namespace molten::study {
+
+struct DamBreak {
+  int dimensions = 2;
+  Triple column{}, tank{};  // m; sizes along x, y (up in 2-D), z (up in 3-D)
+  double spacing = 0;       // m
+  double slip = 1;          // of the walls
+};
+
+/// At rest, with hydrostatic pressure.
+Setup dam_break(const DamBreak& d);
+
+/// The front (m from the closed wall): the fifth-farthest particle's far side, so that a few drops don't count.
+double front_of(const Cloud& cloud);
+
+/// Judges a series against an experiment: relative rms raw, `NAME_raw`, and after the best shift in time,
+/// `NAME_shifted`, and that shift over the experiment's duration, `NAME_time_shift`.
+void expect_series(Report& report, const std::string& name, double raw_reach, double shifted_reach);
+void judge_series(Report& report, const std::string& name, const Series& run, const Series& experiment);
+
+}  // namespace molten::study

@@ -1,0 +1,23 @@
+// The cases, one file each.
+#pragma once
+
+#include "bench/study/case.h"
+
+namespace molten::study {
+
+Case taylor_green();
+Case hot_spot();
+Case two_slabs();
+Case smd_channel();
+Case standing_wave();
+Case elliptic_drop();
+Case rotating_patch();
+Case cruchaga_a();
+Case cruchaga_b();
+Case lobovsky_front();
+Case lobovsky_pressure();
+Case martin_moyce();
+Case koshizuka();
+Case kleefsman();
+
+}  // namespace molten::study

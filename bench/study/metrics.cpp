@@ -1,0 +1,126 @@
+#include "bench/study/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace molten::study {
+
+double Series::operator()(double a) const {
+  const auto next = std::upper_bound(at.begin(), at.end(), a);
+  if (next == at.begin()) return value.front();
+  if (next == at.end()) return value.back();
+  const std::size_t k = next - at.begin();
+  return value[k - 1] + (value[k] - value[k - 1]) * (a - at[k - 1]) / (at[k] - at[k - 1]);
+}
+
+double Series::first_reaches(double level) const {
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    if (value[k] < level) continue;
+    if (k == 0) return at[0];
+    return at[k - 1] + (at[k] - at[k - 1]) * (level - value[k - 1]) / (value[k] - value[k - 1]);
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+Series Series::scaled(double at_factor, double value_factor) const {
+  Series s;
+  for (std::size_t k = 0; k < at.size(); ++k) s.add(at[k] * at_factor, value[k] * value_factor);
+  return s;
+}
+
+Series Series::between(double from, double to) const {
+  Series s;
+  for (std::size_t k = 0; k < at.size(); ++k)
+    if (at[k] >= from && at[k] <= to) s.add(at[k], value[k]);
+  return s;
+}
+
+double relative_rms(const Series& run, const Series& reference, double shift) {
+  double sum = 0;
+  for (std::size_t k = 0; k < reference.at.size(); ++k)
+    sum += std::pow(run(reference.at[k] - shift) / reference.value[k] - 1, 2);
+  return std::sqrt(sum / static_cast<double>(reference.at.size()));
+}
+
+double mean_deviation(const Series& run, const Series& reference) {
+  FieldError error;
+  for (std::size_t k = 0; k < reference.at.size(); ++k) error.add(run(reference.at[k]), reference.value[k]);
+  return error.l1();
+}
+
+double best_shift(const Series& run, const Series& reference, double most) {
+  constexpr int parts = 1000;
+  double best = 0, least = relative_rms(run, reference);
+  for (int k = -parts; k <= parts; ++k) {
+    const double error = relative_rms(run, reference, most * k / parts);
+    if (error < least) least = error, best = most * k / parts;
+  }
+  return best;
+}
+
+void FieldError::add(double value, double exact) {
+  difference1_ += std::abs(value - exact);
+  exact1_ += std::abs(exact);
+  difference2_ += (value - exact) * (value - exact);
+  exact2_ += exact * exact;
+}
+
+double FieldError::l2() const { return std::sqrt(difference2_ / exact2_); }
+
+double depth_at(const Cloud& cloud, int dimensions, const Triple& place, const Triple& half) {
+  double volume = 0, area = 1;
+  for (int d = 0; d + 1 < dimensions; ++d) area *= 2 * half[d];
+  for (std::size_t k = 0; k < cloud.count(); ++k) {
+    bool over = true;
+    for (int d = 0; d + 1 < dimensions; ++d) over = over && std::abs(cloud.position[k][d] - place[d]) < half[d];
+    if (over) volume += cloud.mass / cloud.density[k];
+  }
+  return volume / area;
+}
+
+double pressure_at(const Cloud& cloud, int dimensions, const Triple& point) {
+  const double support = 2 * cloud.smoothing_length;
+  double weights = 0, sum = 0;
+  for (std::size_t k = 0; k < cloud.count(); ++k) {
+    double r2 = 0;
+    for (int d = 0; d < dimensions; ++d) r2 += std::pow(cloud.position[k][d] - point[d], 2);
+    if (r2 >= support * support) continue;
+    const double q = std::sqrt(r2) / cloud.smoothing_length;
+    const double weight = std::pow(1 - q / 2, 4) * (2 * q + 1);  // Wendland C2, as W/W(0)
+    weights += weight;
+    sum += weight * cloud.pressure[k];
+  }
+  // On a wall half of the support is fluid; a tenth of the full sum is a drop.
+  const double h = cloud.smoothing_length / cloud.spacing;
+  const double full = dimensions == 2 ? 4 * M_PI / 7 * h * h : 16 * M_PI / 21 * h * h * h;
+  return weights > 0.1 * full ? sum / weights : 0;
+}
+
+double kinetic_energy(const Cloud& cloud) {
+  double sum = 0;
+  for (const Triple& v : cloud.velocity) sum += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  return cloud.mass * sum / 2;
+}
+
+double clumped_part(const Cloud& cloud, int dimensions) {
+  std::vector<std::size_t> order(cloud.count());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return cloud.position[a][0] < cloud.position[b][0]; });
+  const double near = cloud.spacing / 2;
+  std::vector<bool> clumped(cloud.count(), false);
+  for (std::size_t a = 0; a < order.size(); ++a) {
+    const Triple& x = cloud.position[order[a]];
+    for (std::size_t b = a + 1; b < order.size(); ++b) {
+      const Triple& y = cloud.position[order[b]];
+      if (y[0] - x[0] >= near) break;
+      double r2 = 0;
+      for (int d = 0; d < dimensions; ++d) r2 += (x[d] - y[d]) * (x[d] - y[d]);
+      if (r2 < near * near) clumped[order[a]] = clumped[order[b]] = true;
+    }
+  }
+  return static_cast<double>(std::count(clumped.begin(), clumped.end(), true)) / static_cast<double>(cloud.count());
+}
+
+}  // namespace molten::study

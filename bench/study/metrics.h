@@ -1,0 +1,57 @@
+// Measures of error that several cases share.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "bench/study/simulation.h"
+
+namespace molten::study {
+
+/// A quantity over time, or over place; abscissas rise.
+struct Series {
+  std::vector<double> at, value;
+
+  void add(double a, double v) { at.push_back(a), value.push_back(v); }
+  bool empty() const { return at.empty(); }
+  /// Linear in between; the end values beyond the ends.
+  double operator()(double a) const;
+  /// The first abscissa at which the values reach `level` from below; infinite if they never do.
+  double first_reaches(double level) const;
+  Series scaled(double at_factor, double value_factor) const;
+  /// The part with abscissas in [from, to].
+  Series between(double from, double to) const;
+};
+
+/// √(mean (run(t − shift)/reference(t) − 1)²) over the reference's points.
+double relative_rms(const Series& run, const Series& reference, double shift = 0);
+/// Mean of |run(t) − reference(t)| over the mean of |reference|.
+double mean_deviation(const Series& run, const Series& reference);
+/// The shift in [−most, most] with the least relative rms: by how much an experiment lags, as gates take time to open.
+double best_shift(const Series& run, const Series& reference, double most);
+
+/// Σ|value − exact| / Σ|exact| and √(Σ(value − exact)² / Σ exact²) over particles.
+class FieldError {
+ public:
+  void add(double value, double exact);
+  double l1() const { return difference1_ / exact1_; }
+  double l2() const;
+
+ private:
+  double difference1_ = 0, exact1_ = 0, difference2_ = 0, exact2_ = 0;
+};
+
+/// Depth of fluid (m) over the rectangle (2-D: interval) of ±half (m) about a place: its volume over its area, as a
+/// wire that is wet in part measures.
+double depth_at(const Cloud& cloud, int dimensions, const Triple& place, const Triple& half);
+
+/// Pressure (Pa) at a point, by Shepard's mean over a kernel's support; 0 where there is hardly any fluid.
+double pressure_at(const Cloud& cloud, int dimensions, const Triple& point);
+
+/// Kinetic energy (J; 2-D: J/m).
+double kinetic_energy(const Cloud& cloud);
+
+/// The part of the particles whose nearest neighbour is nearer than half a spacing.
+double clumped_part(const Cloud& cloud, int dimensions);
+
+}  // namespace molten::study

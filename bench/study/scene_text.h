@@ -1,0 +1,49 @@
+// Pieces of scene files for the cases.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "bench/study/simulation.h"
+
+namespace molten::study {
+
+inline std::string vector_text(int dimensions, const Triple& v) {
+  return dimensions == 2 ? fmt::format("[{:.17g}, {:.17g}]", v[0], v[1])
+                         : fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v[0], v[1], v[2]);
+}
+
+inline std::string box_text(int dimensions, const Triple& lower, const Triple& upper) {
+  return fmt::format("{{ min = {}, max = {} }}", vector_text(dimensions, lower), vector_text(dimensions, upper));
+}
+
+/// The head of a scene; `more` are further lines of [scene].
+inline std::string scene_head(int dimensions, const Triple& gravity, const std::string& more = "") {
+  return fmt::format("[scene]\ndimensions = {}\ngravity = {}\n{}\n", dimensions, vector_text(dimensions, gravity),
+                     more);
+}
+
+/// The lines of [scene] for a box (m) that closes on itself along these axes, such as "xy".
+inline std::string periodic_text(int dimensions, const Triple& lower, const Triple& upper, const std::string& axes) {
+  std::string names;
+  for (const char axis : axes) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", axis);
+  return fmt::format("domain = {}\nperiodic = [{}]\n", box_text(dimensions, lower, upper), names);
+}
+
+/// [fluid] with a stand-in for the shape, and what follows of it; then [run].
+inline std::string fluid_text(int dimensions, double spacing, double density, const std::string& more = "") {
+  return fmt::format("[fluid]\nbox = {}\nspacing = {:.17g}\ndensity = {:.17g}\n{}\n[run]\nend_time = 1\n",
+                     box_text(dimensions, {0, 0, 0}, {1, 1, 1}), spacing, density, more);
+}
+
+inline std::string newtonian_text(double viscosity) {
+  return fmt::format("[fluid.rheology]\nviscosity = {:.17g}\n", viscosity);
+}
+
+/// [numerics] with the sound speed (m/s) that suits the case: ten times the fastest flow unless it says otherwise.
+inline std::string sound_speed_text(double sound_speed) {
+  return fmt::format("[numerics]\nsound_speed = {:.17g}\n", sound_speed);
+}
+
+}  // namespace molten::study

@@ -1,0 +1,138 @@
+#include "bench/study/simulation.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "core/error.h"
+#include "core/step.h"
+#include "io/geometry/assemble.h"
+#include "io/scene/scene_file.h"
+
+namespace molten::study {
+
+namespace {
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Setup& setup) {
+  const Parameters<Dim> p = parameters_of<Dim>(scene, setup.start);
+  Contact<Dim> contact(build_walls<Dim>(scene, setup.start.spacing), setup.start.spacing / 2, p.support_radius);
+  State<Dim, Real> s = make_state<Dim, Real>(features_of(scene), p, std::move(contact), setup.start);
+  if (setup.pressure.empty()) return s;
+  for (std::size_t slot = 0; slot < s.particles.slots(); ++slot) {
+    if (s.particles.is_padding(slot)) continue;
+    const auto delta = static_cast<Real>(p.eos.compression(setup.pressure[s.particles[id][0][slot]]));
+    s.particles[compression][0][slot] = delta;
+    if (s.particles.has(half_compression)) s.particles[half_compression][0][slot] = delta;
+  }
+  prepare(s);
+  return s;
+}
+
+template <int Dim, class Real> class Engine : public Simulation {
+ public:
+  Engine(const Scene& scene, const Setup& setup, Report& report)
+      : Simulation(report), state_(state_of<Dim, Real>(scene, setup)), force_(setup.force) {
+    report.dimensions = Dim;
+    report.particles = static_cast<std::int64_t>(state_.particles.count());
+  }
+
+  double time() const override { return state_.clock.time; }
+
+  Cloud cloud() const override {
+    const Parameters<Dim>& p = state_.parameters;
+    Cloud c;
+    c.time = time();
+    c.spacing = p.spacing;
+    c.mass = p.particle_mass;
+    c.smoothing_length = p.smoothing_length;
+    const auto x = state_.particles[position];
+    const auto v = state_.particles[velocity];
+    for (std::size_t slot = 0; slot < state_.particles.slots(); ++slot) {
+      if (state_.particles.is_padding(slot)) continue;
+      Triple place{}, speed{};
+      for (int d = 0; d < Dim; ++d) place[d] = x[d][slot], speed[d] = v[d][slot];
+      const double delta = state_.particles[compression][0][slot];
+      c.id.push_back(state_.particles[id][0][slot]);
+      c.position.push_back(place);
+      c.velocity.push_back(speed);
+      c.density.push_back(p.eos.rest_density * (1 + delta));
+      c.pressure.push_back(p.eos.pressure(delta));
+      if (state_.features.heat) c.temperature.push_back(state_.particles[temperature][0][slot]);
+    }
+    return c;
+  }
+
+ private:
+  void step(double stop) override {
+    state_.clock.stop = stop;
+    const double before = seconds();
+    if (force_)
+      driven_step();
+    else
+      molten::step(state_);
+    report_.wall_time += seconds() - before;
+    report_.steps = state_.clock.step;
+    if (state_.particles.count() == 0) throw Error(ExitCode::diverged, "all particles have left the domain");
+  }
+
+  /// One step with a force that gravity, the same everywhere, is not.
+  void driven_step() {
+    if (state_.neighbours.is_due()) sort_and_list(state_);
+    if (state_.features.stress) find_viscosity(state_);
+    find_rates(state_);
+    const auto x = state_.particles[position];
+    for (std::size_t slot = 0; slot < state_.particles.slots(); ++slot) {
+      if (state_.particles.is_padding(slot)) continue;
+      Triple place{};
+      for (int d = 0; d < Dim; ++d) place[d] = x[d][slot];
+      const Triple f = force_(place);
+      for (int d = 0; d < Dim; ++d) state_.particles[acceleration][d][slot] += static_cast<Real>(f[d]);
+    }
+    require_sane(state_);
+    choose_time_step(state_);
+    integrate_and_collide(state_);
+    const bool lands = state_.clock.time + state_.clock.dt > state_.clock.stop * (1 - 1e-14);
+    state_.clock.time = lands ? state_.clock.stop : state_.clock.time + state_.clock.dt;
+    ++state_.clock.step;
+  }
+
+  State<Dim, Real> state_;
+  std::function<Triple(const Triple&)> force_;
+};
+
+template <int Dim> std::unique_ptr<Simulation> make_engine(const Scene& scene, const Setup& setup, Report& report) {
+  if (scene.numerics.precision == Precision::single) return std::make_unique<Engine<Dim, float>>(scene, setup, report);
+  return std::make_unique<Engine<Dim, double>>(scene, setup, report);
+}
+
+}  // namespace
+
+std::unique_ptr<Simulation> Simulation::make(const Request& request, const Setup& setup, Report& report) {
+  std::vector<std::string> overrides{fmt::format("numerics.preset=\"{}\"", request.numerics)};
+  overrides.insert(overrides.end(), request.scene_overrides.begin(), request.scene_overrides.end());
+  const Scene scene = parse_scene(setup.scene, "case", overrides);
+  if (scene.dimensions == 2) return make_engine<2>(scene, setup, report);
+  return make_engine<3>(scene, setup, report);
+}
+
+void Simulation::run_until(double end, double every, const std::function<void(const Cloud&)>& probe) {
+  double next = time(), told = seconds();
+  const auto probe_when_due = [&] {
+    if (!probe || time() < next) return;
+    probe(cloud());
+    while (next <= time()) next += every;
+  };
+  probe_when_due();
+  while (time() < end) {
+    step(end);
+    probe_when_due();
+    if (seconds() < told + 2) continue;
+    told = seconds();
+    fmt::print(stderr, "  t = {:.4g} of {:.4g} s, {} particles, step {}, {:.3g} s\n", time(), end, report_.particles,
+               report_.steps, report_.wall_time);
+  }
+}
+
+}  // namespace molten::study

@@ -1,0 +1,235 @@
+// The study: its metrics against known answers, its exact solutions, and every case at a tiny size.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "bench/study/channel.h"
+#include "bench/study/dam_break.h"
+#include "bench/study/ellipse.h"
+#include "bench/study/particles.h"
+#include "bench/study/reference.h"
+#include "bench/study/request.h"
+#include "bench/study/wave_fit.h"
+#include "core/error.h"
+#include "tests/temp_folder.h"
+
+namespace molten::study {
+namespace {
+
+// ---- metrics --------------------------------------------------------------------------------------------------------
+
+Series ramp(double from, double to, double slope) {
+  Series s;
+  for (int k = 0; k <= 100; ++k) s.add(from + (to - from) * k / 100, 1 + slope * (from + (to - from) * k / 100));
+  return s;
+}
+
+TEST(StudySeries, InterpolatesAndFindsWhenALevelIsReached) {
+  const Series s{{0, 1, 3}, {1, 2, 6}};
+  EXPECT_DOUBLE_EQ(s(0.5), 1.5);
+  EXPECT_DOUBLE_EQ(s(2), 4);
+  EXPECT_DOUBLE_EQ(s(-1), 1);
+  EXPECT_DOUBLE_EQ(s(9), 6);
+  EXPECT_DOUBLE_EQ(s.first_reaches(5), 2.5);
+  EXPECT_DOUBLE_EQ(s.first_reaches(0), 0);
+  EXPECT_TRUE(std::isinf(s.first_reaches(7)));
+  EXPECT_EQ(s.between(0.5, 3).at, (std::vector<double>{1, 3}));
+  EXPECT_DOUBLE_EQ(s.scaled(2, 10)(1), 15);
+}
+
+TEST(StudySeries, AStepInOneMomentIsReachedInIt) {
+  const Series s{{0, 1, 1, 2}, {0, 0, 5, 5}};
+  EXPECT_DOUBLE_EQ(s.first_reaches(3), 1);
+  EXPECT_DOUBLE_EQ(s(1), 5);
+}
+
+TEST(StudySeries, TenPercentTooFarIsTenPercent) {
+  const Series exact = ramp(0, 2, 3);
+  EXPECT_NEAR(relative_rms(exact.scaled(1, 1.1), exact), 0.1, 1e-12);
+  EXPECT_NEAR(mean_deviation(exact.scaled(1, 0.9), exact), 0.1, 1e-12);
+}
+
+TEST(StudySeries, FindsTheShiftOfAnExperimentThatLagsOrLeads) {
+  const Series run = ramp(-1, 3, 3);
+  for (const double lag : {0.13, -0.08}) {
+    Series late;
+    for (double t = 0; t < 2; t += 0.1) late.add(t, run(t - lag));
+    EXPECT_NEAR(best_shift(run, late, 0.5), lag, 1e-3);
+    EXPECT_LT(relative_rms(run, late, best_shift(run, late, 0.5)), 1e-3);
+    EXPECT_GT(relative_rms(run, late), 0.02);
+  }
+}
+
+TEST(StudyFieldError, IsRelative) {
+  FieldError e;
+  e.add(3, 2), e.add(-5, -6);
+  EXPECT_DOUBLE_EQ(e.l1(), 2. / 8);
+  EXPECT_DOUBLE_EQ(e.l2(), std::sqrt(2. / 40));
+}
+
+Cloud block_cloud(int dimensions, const Triple& upper, double spacing) {
+  Cloud c;
+  c.spacing = spacing;
+  c.smoothing_length = 1.3 * spacing;
+  c.position = lattice(dimensions, {}, upper, spacing).position;
+  c.id.resize(c.position.size());
+  c.velocity.assign(c.position.size(), Triple{1, 2, 2});
+  c.pressure.assign(c.position.size(), 7);
+  c.density.assign(c.position.size(), 1000);
+  c.mass = 1000 * std::pow(spacing, dimensions);
+  return c;
+}
+
+TEST(StudyProbes, PressureIsThatOfTheFluidAndNoneWhereThereIsNone) {
+  for (const int dimensions : {2, 3}) {
+    Cloud c = block_cloud(dimensions, {1, 1, 1}, 0.1);
+    EXPECT_NEAR(pressure_at(c, dimensions, {0.5, 0.5, 0.5}), 7, 1e-12);
+    EXPECT_NEAR(pressure_at(c, dimensions, {1, 0.5, 0.5}), 7, 1e-12) << "on the face";
+    EXPECT_EQ(pressure_at(c, dimensions, {1.25, 0.5, 0.5}), 0) << "a spray's weight";
+    for (std::size_t k = 0; k < c.count(); ++k) c.pressure[k] = 3 * c.position[k][1];
+    EXPECT_NEAR(pressure_at(c, dimensions, {0.5, 0.5, 0.5}), 1.5, 1e-12) << "linear, by symmetry";
+  }
+}
+
+TEST(StudyProbes, DepthEnergyFront) {
+  EXPECT_NEAR(depth_at(block_cloud(2, {1, 0.6, 0}, 0.1), 2, {0.5, 0, 0}, {0.2, 0, 0}), 0.6, 1e-12);
+  EXPECT_NEAR(depth_at(block_cloud(3, {1, 1, 0.3}, 0.1), 3, {0.5, 0.5, 0}, {0.2, 0.1, 0}), 0.3, 1e-12);
+  const Cloud c = block_cloud(2, {1, 1, 0}, 0.1);
+  EXPECT_NEAR(kinetic_energy(c), 1000 * 9 / 2., 1e-9);
+  EXPECT_NEAR(front_of(c), 1, 1e-12);
+}
+
+TEST(StudyProbes, ADropAheadIsNoFront) {
+  Cloud c = block_cloud(2, {1, 1, 0}, 0.1);
+  c.position[0] = {5, 0, 0};
+  EXPECT_NEAR(front_of(c), 1, 1e-12);
+}
+
+TEST(StudyProbes, CountsTheClumped) {
+  Cloud c = block_cloud(2, {1, 1, 0}, 0.1);
+  EXPECT_EQ(clumped_part(c, 2), 0);
+  c.position[17] = c.position[83];
+  c.position[17][1] += 0.04;
+  EXPECT_DOUBLE_EQ(clumped_part(c, 2), 0.02);
+}
+
+// ---- exact solutions ------------------------------------------------------------------------------------------------
+
+TEST(StudyExact, EllipseKeepsItsEnergyAndIsMonaghans) {
+  for (const double t : {0.2, 0.76, 1.5}) {
+    const Ellipse e = ellipse_at(t, -1);
+    EXPECT_NEAR(e.a * e.b, 1, 1e-12);
+    EXPECT_NEAR(e.stretch * e.stretch * (e.a * e.a + e.b * e.b), 2, 1e-9) << t;
+  }
+  EXPECT_NEAR(ellipse_at(0.76, -1).b, 1.95, 0.01);  // Monaghan 1994, t = 0.0076 s of a rim at 100 m/s
+}
+
+TEST(StudyExact, ChannelsAreTheReferences) {
+  const auto smd = [](double jump) {
+    return ChannelProfile([=](double strain) { return smd_stress(strain, jump, 0.5); }, 2).mean();
+  };
+  EXPECT_NEAR(smd(15), 0.1641063, 1e-6);
+  EXPECT_NEAR(smd(150), 0.1472812, 1e-6);
+  EXPECT_NEAR(ChannelProfile([](double strain) { return strain; }, 1).at(0), 0.5, 1e-6);
+}
+
+TEST(StudyExact, WaveFitFindsFrequencyAndDecay) {
+  Series energy;
+  for (int k = 0; k < 200; ++k) {
+    const double t = 0.035 * k;
+    energy.add(t, 0.3 * (1 + std::cos(2 * 1.75 * t + 0.05)) * std::exp(-0.17 * t));
+  }
+  const WaveFit fit = fit_wave(energy, 1.769, 0.158);
+  EXPECT_NEAR(fit.frequency, 1.75, 1e-9);
+  EXPECT_NEAR(fit.decay, 0.17, 1e-9);
+}
+
+// ---- references -----------------------------------------------------------------------------------------------------
+
+/// MOLTEN_REFERENCE as this test wants it.
+class ReferenceFolder {
+ public:
+  explicit ReferenceFolder(const char* folder) {
+    if (const char* before = std::getenv("MOLTEN_REFERENCE")) before_ = before;
+    folder ? setenv("MOLTEN_REFERENCE", folder, 1) : unsetenv("MOLTEN_REFERENCE");
+  }
+  ~ReferenceFolder() {
+    before_.empty() ? unsetenv("MOLTEN_REFERENCE") : setenv("MOLTEN_REFERENCE", before_.c_str(), 1);
+  }
+
+ private:
+  std::string before_;
+};
+
+TEST(StudyReference, ReadsTwoColumnsByNameAndSkipsWhatIsNotThere) {
+  const TempFolder folder;
+  write_bytes(folder.path() / "a.csv", "# a comment\nT,other,Z\n0,9,1\n# more\n1,9,2.5\r\n");
+  write_bytes(folder.path() / "short.csv", "T,Z\n0\n");
+  const ReferenceFolder set(folder.path().c_str());
+  const auto s = reference("a.csv", "T", "Z");
+  ASSERT_TRUE(s);
+  EXPECT_EQ(s->at, (std::vector<double>{0, 1}));
+  EXPECT_EQ(s->value, (std::vector<double>{1, 2.5}));
+  EXPECT_FALSE(reference("none.csv", "T", "Z"));
+  EXPECT_THROW(reference("a.csv", "T", "Q"), Error);
+  EXPECT_THROW(reference("short.csv", "T", "Z"), Error);
+  const ReferenceFolder unset(nullptr);
+  EXPECT_FALSE(reference("a.csv", "T", "Z"));
+}
+
+// ---- the cases ------------------------------------------------------------------------------------------------------
+
+class StudyCase : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(StudyCase, RunsAtATinySizeAndJudgesWhatItExpects) {
+  const Case& chosen = find_case(GetParam());
+  const std::string size = std::to_string(std::max(chosen.least_size, 8LL));
+  std::vector<std::string> settings;
+  if (chosen.name == "smd-channel") settings = {"end_time=0.2"};
+  Report report;
+  ASSERT_TRUE(run_case(chosen, make_request(chosen, size, "", settings), report));
+  EXPECT_GT(report.steps, 0);
+  EXPECT_GT(report.particles, 0);
+  for (const Judgement& j : report.judgements) {
+    EXPECT_FALSE(std::isnan(j.error)) << j.quantity;
+    EXPECT_GT(j.reach, 0) << j.quantity;
+  }
+}
+
+std::vector<std::string> case_names() {
+  std::vector<std::string> names;
+  for (const Case& c : all_cases()) names.push_back(c.name);
+  return names;
+}
+
+std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  for (char& c : name) c = c == '-' ? '_' : c;
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, StudyCase, ::testing::ValuesIn(case_names()), test_name);
+
+TEST(StudyCases, RepeatTheirBits) {
+  const Case& chosen = find_case("taylor-green");
+  const Request request = make_request(chosen, "12", "", {"end_time=0.2"});
+  Report first, second;
+  ASSERT_TRUE(run_case(chosen, request, first));
+  ASSERT_TRUE(run_case(chosen, request, second));
+  EXPECT_EQ(first.judgements[0].error, second.judgements[0].error);
+}
+
+// A setting of a case changes the problem.
+TEST(StudyCases, SettingsReachTheProblem) {
+  const Case& chosen = find_case("hot-spot");
+  Report flat, solid;
+  ASSERT_TRUE(run_case(chosen, make_request(chosen, "16", "", {}), flat));
+  ASSERT_TRUE(run_case(chosen, make_request(chosen, "16", "", {"dimensions=3"}), solid));
+  EXPECT_EQ(flat.dimensions, 2);
+  EXPECT_EQ(solid.dimensions, 3);
+  EXPECT_EQ(solid.particles, 16 * 16 * 16);
+}
+
+}  // namespace
+}  // namespace molten::study
