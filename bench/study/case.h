@@ -12,6 +12,9 @@ namespace molten::study {
 /// For what is reported without a number to stay under.
 inline constexpr double no_reach = std::numeric_limits<double>::infinity();
 
+/// The parameter that every case has: the time step over the one that the numerics would choose.
+inline constexpr const char* step_factor = "step_factor";
+
 /// A number of the case that `--set name=value` changes.
 struct Parameter {
   std::string name;

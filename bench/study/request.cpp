@@ -26,7 +26,7 @@ double number(const std::string& key, const std::string& text) {
 template <class T> std::string names_of(const std::vector<T>& things) {
   std::string names;
   for (const T& thing : things) names += (names.empty() ? "" : ", ") + thing.name;
-  return names.empty() ? "none" : names;
+  return names;
 }
 
 bool is_scene_key(const std::string& key) { return key.starts_with("numerics.") || key.starts_with("boundary."); }
@@ -42,9 +42,9 @@ void apply(const Case& chosen, Request& request, const std::string& setting) {
     request.given[key] = number(key, value);
   } else {
     refuse(
-        fmt::format("--set {}: {} has no such parameter, but {}; keys of the scene go with their table, such as "
+        fmt::format("--set {}: {} has no such parameter; it has {}{}{}; keys of the scene go with their table, such as "
                     "numerics.kernel",
-                    key, chosen.name, names_of(chosen.parameters)));
+                    key, chosen.name, names_of(chosen.parameters), chosen.parameters.empty() ? "" : ", ", step_factor));
   }
 }
 
@@ -97,6 +97,7 @@ Request make_request(const Case& chosen, const std::string& size, const std::str
     request.size = static_cast<long long>(asked);
   }
   if (!numerics.empty()) request.numerics = numerics;
+  request.given[step_factor] = 1;
   for (const Parameter& p : chosen.parameters) request.given[p.name] = p.value;
   for (const std::string& setting : settings) apply(chosen, request, setting);
   return request;
