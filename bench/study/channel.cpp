@@ -1,8 +1,10 @@
-#include "bench/study/channel.h"
-
+// Flow between parallel walls: steady flow of the SMD and of the Bingham fluid, start-up of plane Poiseuille flow.
+// Without walls a periodic box is driven opposite ways in its two halves: the velocity vanishes where they meet, so
+// each half is a channel between no-slip walls.
 #include <algorithm>
 #include <cmath>
 
+#include "bench/study/channel_profile.h"
 #include "bench/study/list.h"
 #include "bench/study/metrics.h"
 #include "bench/study/particles.h"
@@ -12,90 +14,110 @@ namespace molten::study {
 
 namespace {
 
-constexpr int parts = 20000;  // of the half gap
+struct Channel {
+  double half_gap = 1;     // m
+  double force = 0;        // m/s², along x
+  double density = 1;      // kg/m³
+  double sound_speed = 0;  // m/s
+  std::string rheology;    // TOML
+  bool walls = false;
 
-double strain_at(const std::function<double(double)>& stress_of, double stress) {
-  double low = 0, high = 1;
-  while (stress_of(high) < stress) high *= 2;
-  for (int k = 0; k < 100; ++k) {
-    const double middle = (low + high) / 2;
-    (stress_of(middle) < stress ? low : high) = middle;
-  }
-  return (low + high) / 2;
+  double from_middle(double y) const { return std::fmod(y + 4 * half_gap, 2 * half_gap) - half_gap; }
+  double way(double y) const { return std::fmod(y + 4 * half_gap, 4 * half_gap) < 2 * half_gap ? 1 : -1; }
+};
+
+std::string walls_text(double gap) {
+  return fmt::format(
+      "[[boundary]]\nplane = {{ point = [0, 0], normal = [0, 1] }}\n"
+      "[[boundary]]\nplane = {{ point = [0, {:.17g}], normal = [0, -1] }}\n",
+      gap);
 }
 
-}  // namespace
-
-ChannelProfile::ChannelProfile(const std::function<double(double)>& stress_of, double wall_stress)
-    : velocity_(parts + 1, 0.0) {
-  for (int k = parts; k > 0; --k)
-    velocity_[k - 1] = velocity_[k] + strain_at(stress_of, wall_stress * (k - 0.5) / parts) / parts;
-}
-
-double ChannelProfile::at(double y) const {
-  const double k = std::min(std::abs(y), 1.0) * parts;
-  const int low = std::min(static_cast<int>(k), parts - 1);
-  return velocity_[low] + (k - low) * (velocity_[low + 1] - velocity_[low]);
-}
-
-double ChannelProfile::mean() const {
-  double sum = 0;
-  for (int k = 0; k < parts; ++k) sum += (velocity_[k] + velocity_[k + 1]) / 2 / parts;
-  return sum;
-}
-
-double smd_stress(double strain, double jump_number, double flow_index) {
-  return -std::expm1(-(jump_number + 1) * strain) * (std::pow(strain, flow_index) + 1);
-}
-
-namespace {
-
-// A periodic box of height 4 whose halves are driven opposite ways: the velocity vanishes where they meet, so each half
-// is a channel between no-slip walls without one.
-
-double from_middle(double y) { return std::fmod(y + 4, 2) - 1; }
-double way(double y) { return std::fmod(y + 4, 4) < 2 ? 1 : -1; }
-
-Setup set_up(const Request& r, const std::string& rheology, const ChannelProfile& profile) {
-  const double spacing = 1.0 / static_cast<double>(r.size);
-  const Triple size{8 * spacing, 4, 0};
+Setup set_up(const Channel& c, double spacing) {
+  const double gap = 2 * c.half_gap;
+  const Triple size{8 * spacing, c.walls ? gap : 2 * gap, 0};
   Setup s;
-  s.scene = scene_head(2, {}, periodic_text(2, {}, size, "xy")) + fluid_text(2, spacing, 1, rheology) +
-            sound_speed_text(std::max(20.0, 10 * profile.at(0)));
+  // With walls the domain is higher than the fluid, so that nothing is lost by touching its edge.
+  const Triple lower{0, c.walls ? -gap : 0, 0}, upper{size[0], 2 * gap, 0};
+  s.scene = scene_head(2, {c.walls ? c.force : 0, 0, 0}, periodic_text(2, lower, upper, c.walls ? "x" : "xy")) +
+            fluid_text(2, spacing, c.density, c.rheology) + sound_speed_text(c.sound_speed);
+  if (c.walls) s.scene += walls_text(gap);
   s.start = lattice(2, {}, size, spacing);
-  perturb(s.start, 2, r["perturbation"]);
-  if (r["from_rest"] == 0)
-    set_velocity(s.start, [&](const Triple& x) { return Triple{way(x[1]) * profile.at(from_middle(x[1])), 0, 0}; });
-  const double force = r["wall_stress"];
-  s.force = [force](const Triple& x) { return Triple{force * way(x[1]), 0, 0}; };
+  if (!c.walls) s.force = [c](const Triple& x) { return Triple{c.force * c.way(x[1]), 0, 0}; };
   return s;
 }
 
-void run_channel(const Request& r, Report& report, const std::string& rheology, const ChannelProfile& profile) {
+// ---- steady flow ----------------------------------------------------------------------------------------------------
+
+const std::vector<Parameter> steady_parameters{
+    {"wall_stress", 2, "over the yield stress"},
+    {"end_time", 1, "time to become steady"},
+    {"from_rest", 0, "1: starts at rest; 0: with the exact profile"},
+    {"perturbation", 0, "width of the random displacements at the start, spacings"},
+    {"walls", 0, "1: between walls; 0: halves of a periodic box"}};
+
+std::vector<Parameter> joined(std::vector<Parameter> first, const std::vector<Parameter>& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
+void run_steady(const Request& r, Report& report, const std::string& rheology, const ChannelProfile& profile) {
   report.expect("profile_rms", 0.01);
   report.expect("mean_velocity", 0.01);
-  const auto simulation = Simulation::make(r, set_up(r, rheology, profile), report);
+  const Channel c{1, r["wall_stress"], 1, std::max(20.0, 10 * profile.at(0)), rheology, r["walls"] != 0};
+  Setup s = set_up(c, 1.0 / static_cast<double>(r.size));
+  perturb(s.start, 2, r["perturbation"]);
+  if (r["from_rest"] == 0)
+    set_velocity(s.start, [&](const Triple& x) { return Triple{c.way(x[1]) * profile.at(c.from_middle(x[1])), 0, 0}; });
+  const auto simulation = Simulation::make(r, s, report);
   simulation->run_until(r["end_time"]);
 
-  const Cloud c = simulation->cloud();
+  const Cloud cloud = simulation->cloud();
   double sum2 = 0, flow = 0;
-  for (std::size_t k = 0; k < c.count(); ++k) {
-    const double y = c.position[k][1], u = way(y) * c.velocity[k][0];
-    sum2 += std::pow(u - profile.at(from_middle(y)), 2);
+  for (std::size_t k = 0; k < cloud.count(); ++k) {
+    const double y = cloud.position[k][1], u = c.way(y) * cloud.velocity[k][0];
+    sum2 += std::pow(u - profile.at(c.from_middle(y)), 2);
     flow += u;
   }
-  const auto n = static_cast<double>(c.count());
+  const auto n = static_cast<double>(cloud.count());
   report.judge("profile_rms", std::sqrt(sum2 / n) / profile.mean());
   report.judge("mean_velocity", std::abs(flow / n / profile.mean() - 1));
 }
 
 void run_smd(const Request& r, Report& report) {
   const double jump = r["jump_number"], n = r["n"];
-  run_channel(
-      r, report,
-      fmt::format("[fluid.rheology]\nmodel = \"smd\"\nn = {:.17g}\njump_number = {:.17g}\ndimensionless = true\n", n,
-                  jump),
-      ChannelProfile([=](double strain) { return smd_stress(strain, jump, n); }, r["wall_stress"]));
+  const std::string rheology = fmt::format(
+      "[fluid.rheology]\nmodel = \"smd\"\nn = {:.17g}\njump_number = {:.17g}\ndimensionless = true\n", n, jump);
+  run_steady(r, report, rheology,
+             ChannelProfile([=](double strain) { return smd_stress(strain, jump, n); }, r["wall_stress"]));
+}
+
+// ---- start-up of Poiseuille flow ------------------------------------------------------------------------------------
+
+constexpr double gap = 1e-3, kinematic_viscosity = 1e-6;  // m, m²/s
+
+void run_poiseuille(const Request& r, Report& report) {
+  const double fastest = r["reynolds"] * kinematic_viscosity / gap,
+               force = 8 * kinematic_viscosity * fastest / (gap * gap);
+  const std::vector<double> times{0.0225, 0.045, 0.1125, 0.225, 1};  // s
+  report.expect("profile_l2", 0.005);
+  for (const double t : times) report.expect(fmt::format("profile_l2_{}s", t), no_reach);
+  const Channel c{gap / 2, force, 1000, 10 * fastest, newtonian_text(1000 * kinematic_viscosity), r["walls"] != 0};
+  const auto simulation = Simulation::make(r, set_up(c, gap / static_cast<double>(r.size)), report);
+  double worst = 0;
+  for (const double t : times) {
+    simulation->run_until(t);
+    const Cloud cloud = simulation->cloud();
+    FieldError error;
+    for (std::size_t k = 0; k < cloud.count(); ++k) {
+      const double y = cloud.position[k][1];
+      error.add(c.way(y) * cloud.velocity[k][0],
+                poiseuille_velocity(c.from_middle(y) + gap / 2, t, gap, kinematic_viscosity, force));
+    }
+    report.judge(fmt::format("profile_l2_{}s", t), error.l2());
+    worst = std::max(worst, error.l2());
+  }
+  report.judge("profile_l2", worst);
 }
 
 }  // namespace
@@ -107,13 +129,20 @@ Case smd_channel() {
           "particles a half gap",
           32,
           4,
-          {{"jump_number", 15, "J"},
-           {"n", 0.5, "flow index"},
-           {"wall_stress", 2, "yield stresses"},
-           {"end_time", 1, "time to become steady"},
-           {"from_rest", 0, "1: starts at rest; 0: with the exact profile"},
-           {"perturbation", 0, "width of the random displacements at the start, spacings"}},
+          joined({{"jump_number", 15, "J"}, {"n", 0.5, "flow index"}}, steady_parameters),
           run_smd};
+}
+
+Case poiseuille() {
+  return {
+      "poiseuille",
+      "start-up of plane Poiseuille flow (Morris et al. 1997); largest relative L2 of the velocity at 0.0225, 0.045, "
+      "0.1125, 0.225 and 1 s",
+      "particles across the gap",
+      32,
+      6,
+      {{"reynolds", 0.0125, "largest velocity × gap/ν"}, {"walls", 1, "1: between walls; 0: halves of a periodic box"}},
+      run_poiseuille};
 }
 
 }  // namespace molten::study

@@ -8,8 +8,12 @@ namespace molten::study {
 Case taylor_green();
 Case hot_spot();
 Case two_slabs();
+Case poiseuille();
 Case smd_channel();
 Case standing_wave();
+Case hydrostatic_box();
+Case hydrostatic_bowl();
+Case slope_yield();
 Case elliptic_drop();
 Case rotating_patch();
 Case cruchaga_a();

@@ -47,6 +47,7 @@ template <int Dim, class Real> class Engine : public Simulation {
     c.spacing = p.spacing;
     c.mass = p.particle_mass;
     c.smoothing_length = p.smoothing_length;
+    c.sound_speed = p.eos.sound_speed;
     const auto x = state_.particles[position];
     const auto v = state_.particles[velocity];
     for (std::size_t slot = 0; slot < state_.particles.slots(); ++slot) {

@@ -17,6 +17,7 @@ using Triple = std::array<double, 3>;
 /// Every particle at one moment; z = 0 in 2-D.
 struct Cloud {
   double time = 0, spacing = 0;            // s, m
+  double sound_speed = 0;                  // m/s
   double mass = 0, smoothing_length = 0;   // of a particle, kg (2-D: kg/m); m
   std::vector<std::int64_t> id;            // place in Setup::start
   std::vector<Triple> position, velocity;  // m, m/s

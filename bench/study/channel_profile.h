@@ -1,5 +1,4 @@
-// Steady flow of generalised Newtonian fluids between parallel walls, half a gap of 1 apart from the middle: exact
-// profiles by quadrature.
+// Exact flow between parallel walls.
 #pragma once
 
 #include <functional>
@@ -7,8 +6,8 @@
 
 namespace molten::study {
 
-/// Velocity over y from the middle (0) to the wall (1) of a fluid whose shear stress is τ_w y: the strain rate that
-/// carries it, integrated from the wall. `stress_of` rises with the strain rate.
+/// Steady velocity over y from the middle (0) to the wall (1) of a generalised Newtonian fluid, whose shear stress is
+/// τ_w y: the strain rate that carries it, integrated from the wall. `stress_of` rises with the strain rate.
 class ChannelProfile {
  public:
   ChannelProfile(const std::function<double(double)>& stress_of, double wall_stress);
@@ -22,5 +21,9 @@ class ChannelProfile {
 
 /// Shear stress of the SMD fluid in units of τ0 over the strain rate in units of γ̇1 ([P] 6-1).
 double smd_stress(double strain, double jump_number, double flow_index);
+
+/// Start-up of plane Poiseuille flow under a force (m/s²) between walls at y = 0 and y = `gap` (Morris, Fox & Zhu
+/// 1997).
+double poiseuille_velocity(double y, double time, double gap, double kinematic_viscosity, double force);
 
 }  // namespace molten::study
