@@ -18,13 +18,20 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = ROOT / "build/release/bench/study"
 COLUMNS = ["case", "numerics", "dimensions", "particles", "size", "steps", "wall_time_s", "quantity", "error", "reach"]
-KEPT = ["preset", "settings", "threads", "status"] + COLUMNS
+KEPT = ["commit", "preset", "settings", "threads", "status"] + COLUMNS
 
-# Presets, and single changes to "molten": what the study compares.
+# Presets, and changes to "molten": what the study compares. What this version of the program does not have is refused
+# by it, which takes no time and is tried again when the study goes on.
 PRESETS = ["molten", "internal", "dias", "paiva", "queiroz"]
-CHANGES = [["numerics.kernel=cubic_spline"], ["numerics.kernel=gaussian"], ["numerics.smoothing_ratio=1.7"],
-           ["numerics.smoothing_ratio=2"], ["numerics.precision=double"], ["numerics.integrator=symplectic_euler"],
-           ["numerics.artificial_viscosity=0"], ["numerics.artificial_viscosity=0.02"]]
+CHANGES = [["numerics." + key for key in keys.split()] for keys in [
+    "kernel=cubic_spline", "kernel=gaussian", "smoothing_ratio=1.7", "smoothing_ratio=2", "precision=double",
+    "integrator=symplectic_euler", "integrator=predictor_corrector", "integrator=runge_kutta_4",
+    "artificial_viscosity=0", "artificial_viscosity=0.02", "gradient_correction=true",
+    "gradient_correction=true artificial_viscosity=0", "density_diffusion=0.1",
+    "density_diffusion=0.1 artificial_viscosity=0.02", "density_diffusion=0.1 wall_support=true",
+    'density_filter={kind="shepard"}', 'density_filter={kind="mls"}', "tensile_correction=true"]]
+COMMIT = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True,
+                        text=True).stdout.strip() or "unknown"
 MARGINS = [2, 4, 8]  # times the time step
 
 # Sizes of the full study, and the one of the quick study (at most 50 particles a side, 20 s a case).
@@ -99,7 +106,7 @@ def run_one(case, size, preset, settings, limit):
     command = [PROGRAM, "--case", case, "--size", str(size), "--numerics", preset]
     for setting in settings:
         command += ["--set", setting]
-    head = {"preset": preset, "settings": " ".join(settings), "threads": os.environ.get("OMP_NUM_THREADS", "all")}
+    head = {"commit": COMMIT, "preset": preset, "settings": " ".join(settings), "threads": os.environ.get("OMP_NUM_THREADS", "all")}
     nothing = dict.fromkeys(COLUMNS, "") | {"case": case, "size": size} | head
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=limit)
@@ -114,7 +121,11 @@ def run_one(case, size, preset, settings, limit):
 
 
 def run_all(runs, file, limit):
-    done = {key_of(row) for row in read_rows(file, KEPT)}
+    rows = read_rows(file, KEPT)
+    others = {row["commit"] for row in rows} - {COMMIT}
+    if others:
+        say(f"{file} has results of commit {', '.join(sorted(others))}, which stay; -o names a folder for new ones")
+    done = {key_of(row) for row in rows if not row["status"].startswith("refused")}
     left = [r for r in runs if (r[0], r[1], r[2], " ".join(r[3])) not in done]
     if len(left) < len(runs):
         say(f"{len(runs) - len(left)} of {len(runs)} runs are there already, in {file}")
