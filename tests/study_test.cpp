@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "bench/study/cavity_flow.h"
 #include "bench/study/channel_profile.h"
 #include "bench/study/dam_break.h"
 #include "bench/study/ellipse.h"
@@ -139,6 +140,37 @@ TEST(StudyExact, PoiseuilleStartsAtRestAndEndsOnItsParabola) {
   EXPECT_NEAR(poiseuille_velocity(gap / 3, 0, gap, nu, force), 0, 1e-10);
   EXPECT_NEAR(poiseuille_velocity(gap / 2, 10, gap, nu, force), 1.25e-5, 1e-12);
   EXPECT_NEAR(poiseuille_velocity(2.5e-4, 0.0225, gap, nu, force), 2.02393927e-06, 1e-13);
+}
+
+TEST(StudyExact, CouetteStartsAtRestAndEndsOnItsLine) {
+  const double gap = 1e-3, nu = 1e-6, speed = 1.25e-5;
+  EXPECT_NEAR(couette_velocity(gap / 2, 1e-3, gap, nu, speed), 0, 1e-12);
+  EXPECT_NEAR(couette_velocity(gap / 4, 10, gap, nu, speed), speed / 4, 1e-15);
+  EXPECT_NEAR(couette_velocity(2.5e-5, 0.1125, gap, nu, speed), 1.14109517e-07, 1e-14);
+}
+
+TEST(StudyExact, BinghamHasItsPlug) {
+  const ChannelProfile ideal([](double strain) { return std::min(1e12 * strain, 1 + strain); }, 2);
+  EXPECT_NEAR(ideal.at(0), 0.25, 1e-6);
+  EXPECT_NEAR(ideal.at(0.49), 0.25, 1e-6);
+  EXPECT_NEAR(ideal.at(0.75), 0.1875, 1e-6);  // ((T − 1)² − (Ty − 1)²)/(2T), T = 2
+}
+
+TEST(StudyExact, CavityHasTheReferencesCentre) {
+  const CentreLines lines = cavity_flow(100, 24);
+  EXPECT_NEAR(lines.u(0.5), -0.20912, 5e-4);
+  EXPECT_NEAR(lines.v(0.5), 0.05753, 5e-4);
+  EXPECT_EQ(lines.u(1), 1);
+}
+
+TEST(StudyProbes, ValueAtIsExactForLinearFields) {
+  for (const int dimensions : {2, 3}) {
+    const Cloud c = block_cloud(dimensions, {1, 1, 1}, 0.1);
+    const auto linear = [&](std::size_t k) { return 1 + 2 * c.position[k][0] - 3 * c.position[k][1]; };
+    EXPECT_NEAR(value_at(c, dimensions, {0.43, 0.51, 0.5}, linear), 1 + 2 * 0.43 - 3 * 0.51, 1e-10);
+    EXPECT_NEAR(value_at(c, dimensions, {0.43, 1, 0.5}, linear), 1 + 2 * 0.43 - 3, 1e-10) << "on the face";
+    EXPECT_EQ(value_at(c, dimensions, {5, 5, 5}, linear), 0);
+  }
 }
 
 TEST(StudyExact, WaveFitFindsFrequencyAndDecay) {

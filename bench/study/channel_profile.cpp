@@ -53,4 +53,14 @@ double poiseuille_velocity(double y, double time, double gap, double kinematic_v
   return velocity;
 }
 
+double couette_velocity(double y, double time, double gap, double kinematic_viscosity, double wall_speed) {
+  double velocity = wall_speed * y / gap;
+  for (int n = 1; n < 400; ++n) {
+    const double k = n * M_PI / gap;
+    velocity += 2 * wall_speed / (n * M_PI) * (n % 2 == 0 ? 1 : -1) * std::sin(k * y) *
+                std::exp(-kinematic_viscosity * k * k * time);
+  }
+  return velocity;
+}
+
 }  // namespace molten::study

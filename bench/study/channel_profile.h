@@ -26,4 +26,7 @@ double smd_stress(double strain, double jump_number, double flow_index);
 /// 1997).
 double poiseuille_velocity(double y, double time, double gap, double kinematic_viscosity, double force);
 
+/// Start-up of plane Couette flow between a wall at rest at y = 0 and one of speed `wall_speed` at y = `gap` (same).
+double couette_velocity(double y, double time, double gap, double kinematic_viscosity, double wall_speed);
+
 }  // namespace molten::study

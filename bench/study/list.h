@@ -8,8 +8,11 @@ namespace molten::study {
 Case taylor_green();
 Case hot_spot();
 Case two_slabs();
+Case cavity();
+Case couette();
 Case poiseuille();
 Case smd_channel();
+Case bingham_channel();
 Case standing_wave();
 Case hydrostatic_box();
 Case hydrostatic_bowl();

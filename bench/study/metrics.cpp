@@ -1,5 +1,6 @@
 #include "bench/study/metrics.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -79,18 +80,44 @@ double depth_at(const Cloud& cloud, int dimensions, const Triple& place, const T
   return volume / area;
 }
 
-double pressure_at(const Cloud& cloud, int dimensions, const Triple& point) {
+namespace {
+
+/// Calls f(k, weight, offset from the point) for the particles within a support of a point; Wendland C2 as W/W(0).
+template <class F> void near(const Cloud& cloud, int dimensions, const Triple& point, F&& f) {
   const double support = 2 * cloud.smoothing_length;
-  double weights = 0, sum = 0;
   for (std::size_t k = 0; k < cloud.count(); ++k) {
+    Triple offset{};
     double r2 = 0;
-    for (int d = 0; d < dimensions; ++d) r2 += std::pow(cloud.position[k][d] - point[d], 2);
+    for (int d = 0; d < dimensions; ++d) offset[d] = cloud.position[k][d] - point[d], r2 += offset[d] * offset[d];
     if (r2 >= support * support) continue;
     const double q = std::sqrt(r2) / cloud.smoothing_length;
-    const double weight = std::pow(1 - q / 2, 4) * (2 * q + 1);  // Wendland C2, as W/W(0)
+    f(k, std::pow(1 - q / 2, 4) * (2 * q + 1), offset);
+  }
+}
+
+}  // namespace
+
+double value_at(const Cloud& cloud, int dimensions, const Triple& point, const std::function<double(std::size_t)>& of) {
+  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d sums = Eigen::Vector4d::Zero();
+  near(cloud, dimensions, point, [&](std::size_t k, double weight, const Triple& offset) {
+    const double h = cloud.smoothing_length;
+    const Eigen::Vector4d base(1, offset[0] / h, offset[1] / h, offset[2] / h);
+    moments += weight * base * base.transpose();
+    sums += weight * of(k) * base;
+  });
+  if (moments(0, 0) == 0) return 0;
+  for (int d = dimensions; d < 3; ++d) moments(d + 1, d + 1) = 1;
+  const bool spanned = moments.determinant() > 1e-4 * std::pow(moments(0, 0), dimensions + 1);
+  return spanned ? moments.ldlt().solve(sums)[0] : sums[0] / moments(0, 0);
+}
+
+double pressure_at(const Cloud& cloud, int dimensions, const Triple& point) {
+  double weights = 0, sum = 0;
+  near(cloud, dimensions, point, [&](std::size_t k, double weight, const Triple&) {
     weights += weight;
     sum += weight * cloud.pressure[k];
-  }
+  });
   // On a wall half of the support is fluid; a tenth of the full sum is a drop.
   const double h = cloud.smoothing_length / cloud.spacing;
   const double full = dimensions == 2 ? 4 * M_PI / 7 * h * h : 16 * M_PI / 21 * h * h * h;

@@ -45,6 +45,10 @@ class FieldError {
 /// wire that is wet in part measures.
 double depth_at(const Cloud& cloud, int dimensions, const Triple& place, const Triple& half);
 
+/// A quantity of the particles (by their place in the cloud) at a point: moving least squares of first order over a
+/// kernel's support; the weighted mean where particles do not span it, 0 where there are none.
+double value_at(const Cloud& cloud, int dimensions, const Triple& point, const std::function<double(std::size_t)>& of);
+
 /// Pressure (Pa) at a point, by Shepard's mean over a kernel's support; 0 where there is hardly any fluid.
 double pressure_at(const Cloud& cloud, int dimensions, const Triple& point);
 
