@@ -44,7 +44,7 @@ Setup set_up(const Channel& c, double spacing) {
   const Triple lower{0, c.walls ? -gap : 0, 0}, upper{size[0], 2 * gap, 0};
   s.scene = scene_head(2, {c.walls ? c.force : 0, 0, 0}, periodic_text(2, lower, upper, c.walls ? "x" : "xy")) +
             fluid_text(2, spacing, c.density, c.rheology) + sound_speed_text(c.sound_speed);
-  if (c.walls) s.scene += walls_text(gap, c.wall_speed);
+  if (c.walls) s.scene += wall_support_text() + walls_text(gap, c.wall_speed);
   s.start = lattice(2, {}, size, spacing);
   if (!c.walls) s.force = [c](const Triple& x) { return Triple{c.force * c.way(x[1]), 0, 0}; };
   return s;

@@ -65,7 +65,8 @@ void run_box(const Request& r, Report& report) {
   Triple fluid{width, width, width}, tank = fluid, g{};
   fluid[up] = depth, tank[up] = 2 * depth, g[up] = -gravity;
   Setup s;
-  s.scene = scene_head(dimensions, g) + fluid_text(dimensions, spacing, density) +
+  s.scene = scene_head(dimensions, g) + fluid_text(dimensions, spacing, density) + "[numerics]\n" +
+            wall_support_text() +
             fmt::format("[[boundary]]\nbox = {}\ninside = true\nslip = 1\n", box_text(dimensions, {}, tank));
   s.start = lattice(dimensions, {}, fluid, spacing);
   start_at_rest(s, up);
@@ -75,7 +76,7 @@ void run_box(const Request& r, Report& report) {
 void run_bowl(const Request& r, Report& report) {
   const double spacing = depth / static_cast<double>(r.size);
   Setup s;
-  s.scene = scene_head(3, {0, 0, -gravity}) + fluid_text(3, spacing, density) +
+  s.scene = scene_head(3, {0, 0, -gravity}) + fluid_text(3, spacing, density) + "[numerics]\n" + wall_support_text() +
             fmt::format("[[boundary]]\nsphere = {{ center = [0, 0, {}], radius = {} }}\ninside = true\nslip = 1\n",
                         depth, depth);
   const Start block = lattice(3, {-depth, -depth, 0}, {depth, depth, depth}, spacing);
@@ -103,7 +104,7 @@ void run_slope(const Request& r, Report& report) {
                        fmt::format("[fluid.rheology]\nmodel = \"smd\"\nn = 0.5\njump_number = {:.17g}\n"
                                    "yield_stress = {:.17g}\nconsistency = {:.17g}\n",
                                    r["jump_number"], yield_stress, yield_stress)) +
-            "[[boundary]]\nplane = { point = [0, 0], normal = [0, 1] }\n";
+            "[numerics]\n" + wall_support_text() + "[[boundary]]\nplane = { point = [0, 0], normal = [0, 1] }\n";
   s.start = lattice(2, {}, {length, 1, 0}, spacing);
   for (const Triple& x : s.start.position) s.pressure.push_back(std::cos(angle) * (1 - x[1]));
   const auto simulation = Simulation::make(r, s, report);

@@ -46,4 +46,7 @@ inline std::string sound_speed_text(double sound_speed) {
   return fmt::format("[numerics]\nsound_speed = {:.17g}\n", sound_speed);
 }
 
+/// What makes a wall felt by the fluid before it: to follow the text of [numerics].
+inline std::string wall_support_text() { return "wall_support = true\ndensity_diffusion = 0.1\n"; }
+
 }  // namespace molten::study
