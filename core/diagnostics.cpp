@@ -64,6 +64,7 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
         a.max_compression = std::max(a.max_compression, b.max_compression);
       });
   if (share) total.mean_energy_share /= static_cast<double>(std::max<std::int64_t>(total.particles, 1));
+  total.asleep = s.sleep.asleep;
   for (int k = 0; k < 3; ++k)
     if (k >= Dim || total.particles == 0) total.lower[k] = total.upper[k] = 0;
   return total;

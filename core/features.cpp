@@ -32,6 +32,15 @@ void require_sense(const Scene& scene) {
     refuse(scene, "numerics.shifting: needs corrected gradients; add gradient_correction = true to [numerics]");
   if (r.thermal && !scene.fluid.heat)
     refuse(scene, "fluid.rheology: a viscosity that varies with temperature needs [fluid.heat]; add it");
+  const Numerics& n = scene.numerics;
+  const bool two_step = n.integrator == IntegratorKind::leap_frog || n.integrator == IntegratorKind::symplectic_euler;
+  if (n.sleep && (!two_step || n.density_filter || n.density == DensityForm::summation || n.gradient_correction ||
+                  n.internal_energy))
+    refuse(scene,
+           "numerics.sleep: goes with the integrators leap_frog and symplectic_euler and a density by continuity, "
+           "without density_filter, gradient_correction or internal_energy; leave one of the two out");
+  if (n.sleep && n.sleep->temperature_rate && !scene.fluid.heat)
+    refuse(scene, "numerics.sleep.temperature_rate: this scene has no [fluid.heat]; leave the key out or add heat");
   for (int d = 0; d < scene.dimensions; ++d)
     if (scene.periodic[d] && !scene.domain)
       refuse(scene, "scene.periodic: a periodic axis needs scene.domain for its length");
@@ -80,6 +89,7 @@ Features features_of(const Scene& scene) {
   f.contact = !scene.boundaries.empty();
   f.wall_support = f.contact && scene.numerics.wall_support;
   f.density_diffusion = scene.numerics.density_diffusion > 0;
+  f.sleep = scene.numerics.sleep.has_value();
   f.integrator = scene.numerics.integrator;
   if ((f.wall_support || f.density_diffusion) && (f.gradient_correction || f.any_seldom()))
     refuse(scene, std::string("numerics.") + (f.wall_support ? "wall_support" : "density_diffusion") +
@@ -110,6 +120,7 @@ FieldSet Features::columns() const {
   if (gradient_correction) s |= field_set(FieldList<Correction>{});
   if (gradient_correction && (heat || laminar)) s |= field_set(FieldList<LaplacianCorrection>{});
   if (shifting) s |= field_set(FieldList<ShiftVelocity>{});
+  if (sleep) s |= field_set(FieldList<RestTime>{});
   return s;
 }
 
@@ -118,6 +129,7 @@ std::vector<std::string> Features::passes() const {
   if (density_filter) p.push_back("density filter");
   if (density_sum) p.push_back("density");
   if (gradient_correction) p.push_back("corrections");
+  if (sleep) p.push_back("wake and rest");
   if (stress) p.push_back("viscosity");
   p.push_back(heat ? "forces and heat" : "forces");
   p.push_back(contact ? "integrate and collide" : "integrate");
@@ -143,6 +155,7 @@ std::vector<std::string> Features::names() const {
   if (contact) n.push_back("contact");
   if (wall_support) n.push_back("wall-support");
   if (density_diffusion) n.push_back("density-diffusion");
+  if (sleep) n.push_back("sleep");
   n.push_back(name_of(integrator));
   return n;
 }

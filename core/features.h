@@ -29,6 +29,7 @@ struct Features {
   bool contact = false;       // walls
   bool wall_support = false;  // walls make up for what they cut off a particle's support
   bool density_diffusion = false;
+  bool sleep = false;  // what is at rest
   IntegratorKind integrator = IntegratorKind::leap_frog;
 
   /// No forces but pressure and artificial viscosity, no heat, no XSPH: the shortest instantiation of the forces pass

@@ -59,6 +59,7 @@ MOLTEN_FIELD(VelocitySlope, VectorField, velocity_slope, "m/s2", "weighted sum o
 MOLTEN_FIELD(CompressionSlope, ScalarField, compression_slope, "1/s", "the same of the rates of compression");
 MOLTEN_FIELD(TemperatureSlope, ExactScalar, temperature_slope, "K/s", "the same of the rates of temperature");
 MOLTEN_FIELD(OlderCompressionRate, ScalarField, older_compression_rate, "1/s", "compression rate two steps ago");
+MOLTEN_FIELD(RestTime, ScalarField, rest_time, "s", "time since the particle last moved or changed");
 
 // What the passes compute for each other, from the above.
 MOLTEN_FIELD(LocalPosition, StepVector, local_position, "m",
@@ -100,7 +101,8 @@ using AllFields =
               OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress, Acceleration,
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
-              CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare>;
+              CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
+              RestTime>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

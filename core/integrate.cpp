@@ -38,10 +38,19 @@ template <int Dim, class Real> class Integrator {
     advance_compression(slot);
     if (s_.features.internal_energy) internal_energy_[slot] += kick_ * internal_energy_rate_[slot];
     if (s_.features.heat) temperature_[slot] += dt_ * temperature_rate_[slot];
+    if (s_.features.sleep) rest_time_[slot] = at_rest(slot) ? rest_time_[slot] + static_cast<Real>(dt_) : 0;
     return (motion.position - before).squaredNorm();
   }
 
  private:
+  bool at_rest(std::size_t slot) const {
+    const RestBounds& bounds = *s_.parameters.rest;
+    double v2 = 0;
+    for (int d = 0; d < Dim; ++d) v2 += double(velocity_[d][slot]) * velocity_[d][slot];
+    return v2 <= bounds.speed * bounds.speed && std::abs(compression_rate_[slot]) <= bounds.density_rate &&
+           (!s_.features.heat || std::abs(temperature_rate_[slot]) <= bounds.temperature_rate);
+  }
+
   Motion<Dim> kicked(std::size_t slot) const {
     Motion<Dim> m;
     const auto& v = s_.features.integrator == IntegratorKind::leap_frog ? half_velocity_.c : velocity_.c;
@@ -107,6 +116,7 @@ template <int Dim, class Real> class Integrator {
   const Real* temperature_rate_ = p_[temperature_rate][0];
   double* internal_energy_ = p_[internal_energy][0];
   const Real* internal_energy_rate_ = p_[internal_energy_rate][0];
+  Real* rest_time_ = p_[rest_time][0];
 };
 
 /// What the pair passes read of one particle, from its state.
@@ -138,24 +148,26 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   if (kind != IntegratorKind::leap_frog && kind != IntegratorKind::symplectic_euler) return finish_stages(s);
   const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
   const Preparation<Dim, Real> preparation(s);
+  const std::size_t first = s.neighbours.first_slot(Block::active);
   const double way2 = reduce_slots(
-      s.particles.slots(), 0.0,
-      [&](std::size_t slot, double& largest) {
-        largest = std::max(largest, integrator.advance(slot));
-        preparation.of(slot);
+      s.particles.slots() - first, 0.0,
+      [&](std::size_t k, double& largest) {
+        largest = std::max(largest, integrator.advance(first + k));
+        preparation.of(first + k);
       },
       [](double& a, double b) { a = std::max(a, b); });
   s.neighbours.moved(std::sqrt(way2));
+  s.sleep.travel += (s.parameters.eos.sound_speed + std::sqrt(s.extremes.speed2)) * s.clock.dt;
 }
 
-template <int Dim, class Real> void prepare(State<Dim, Real>& s) {
+template <int Dim, class Real> void prepare(State<Dim, Real>& s, std::size_t first) {
   const Preparation<Dim, Real> preparation(s);
-  for_each_slot(s.particles.slots(), [&](std::size_t slot) { preparation.of(slot); });
+  for_each_slot(s.particles.slots() - first, [&](std::size_t k) { preparation.of(first + k); });
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)                     \
   template void integrate_and_collide(State<Dim, Real>&); \
-  template void prepare(State<Dim, Real>&);
+  template void prepare(State<Dim, Real>&, std::size_t);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)
 MOLTEN_INSTANTIATE(3, float)

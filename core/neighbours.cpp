@@ -33,21 +33,64 @@ Neighbours<Dim, Real>::Neighbours(const NeighbourSettings& settings, const Domai
 }
 
 template <int Dim, class Real> void Neighbours<Dim, Real>::rebuild(Particles<Dim, Real>& particles) {
-  choose_grid(particles);
-  sort(particles);
-  find_boxes(particles);
+  choose_grid(particles, {});
+  column_begin_.assign(grid_.columns() + 1, 0);
+  sort(particles, 0, {});
+  find_boxes(particles, 0);
   list_neighbours(particles);
   displacement_ = 0;
 }
 
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::rebuild(Particles<Dim, Real>& particles, std::span<const Block> block_of) {
+  Cell<Dim> margin;
+  margin.fill(2 * segment_columns);
+  margin[Grid<Dim>::along] = 2;
+  choose_grid(particles, margin);
+  column_begin_.assign(block_count * grid_.columns() + 1, 0);
+  sort(particles, 0, block_of);
+  find_boxes(particles, 0);
+  list_neighbours(particles);
+  displacement_ = 0;
+}
+
+template <int Dim, class Real> void Neighbours<Dim, Real>::rebuild_active(Particles<Dim, Real>& particles) {
+  const std::size_t first_cluster = first_slot(Block::active) / cluster_size;
+  sort(particles, piles() - grid_.columns(), {});
+  find_boxes(particles, first_cluster);
+  list_neighbours(particles);
+  displacement_ = 0;
+}
+
+template <int Dim, class Real> std::size_t Neighbours<Dim, Real>::first_slot(Block block) const {
+  const std::size_t from_end = block_count - static_cast<std::size_t>(block), blocks = piles() / grid_.columns();
+  return blocks < from_end ? 0 : column_begin_[(blocks - from_end) * grid_.columns()] * std::size_t{cluster_size};
+}
+
+template <int Dim, class Real> bool Neighbours<Dim, Real>::covers_active(const Particles<Dim, Real>& particles) const {
+  const std::size_t first = first_slot(Block::active);
+  const auto x = particles[position];
+  return reduce_slots(
+      particles.slots() - first, true,
+      [&](std::size_t k, bool& all) {
+        if (particles.is_padding(first + k)) return;
+        for (int d = 0; d < Dim; ++d) {
+          const double upper = grid_.lower[d] + grid_.cells[d] * grid_.width[d];
+          all &= grid_.periodic[d] || (x[d][first + k] >= grid_.lower[d] && x[d][first + k] < upper);
+        }
+      },
+      [](bool& all, bool block) { all &= block; });
+}
+
 template <int Dim, class Real> void Neighbours<Dim, Real>::relist(Particles<Dim, Real>& particles) {
-  find_boxes(particles);
+  find_boxes(particles, 0);
   list_neighbours(particles);
 }
 
 // ---- the grid -------------------------------------------------------------------------------------------------------
 
-template <int Dim, class Real> void Neighbours<Dim, Real>::choose_grid(const Particles<Dim, Real>& particles) {
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::choose_grid(const Particles<Dim, Real>& particles, const Cell<Dim>& margin) {
   struct Extent {
     std::array<double, Dim> lower, upper;
   };
@@ -84,8 +127,8 @@ template <int Dim, class Real> void Neighbours<Dim, Real>::choose_grid(const Par
       grid_.width[d] = domain_.periodic.period[d] / grid_.cells[d];
     } else {
       grid_.width[d] = wanted;
-      grid_.lower[d] = std::floor(extent.lower[d] / wanted) * wanted;
-      grid_.cells[d] = static_cast<std::int32_t>((extent.upper[d] - grid_.lower[d]) / wanted) + 1;
+      grid_.lower[d] = (std::floor(extent.lower[d] / wanted) - margin[d]) * wanted;
+      grid_.cells[d] = static_cast<std::int32_t>((extent.upper[d] - grid_.lower[d]) / wanted) + 1 + margin[d];
     }
   }
   // A few particles thrown far must not make the table of columns larger than the particles: wider columns then.
@@ -126,45 +169,57 @@ void Neighbours<Dim, Real>::localise(Particles<Dim, Real>& particles, std::size_
 
 // ---- order ----------------------------------------------------------------------------------------------------------
 
-template <int Dim, class Real> void Neighbours<Dim, Real>::sort(Particles<Dim, Real>& particles) {
+/// Sorts the particles of the piles from first_pile on, and drops those of them that are outside the domain.
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::sort(Particles<Dim, Real>& particles, std::size_t first_pile,
+                                 std::span<const Block> block_of) {
   const auto x = particles[position];
-  for_each_slot(particles.slots(), [&](std::size_t s) {
-    for (int d = 0; d < Dim; ++d) x[d][s] = domain_.periodic.wrapped(d, x[d][s]);
+  const std::size_t first = column_begin_[first_pile] * std::size_t{cluster_size};
+  for_each_slot(particles.slots() - first, [&](std::size_t k) {
+    for (int d = 0; d < Dim; ++d) x[d][first + k] = domain_.periodic.wrapped(d, x[d][first + k]);
   });
-  sort_columns(particles);
-  std::size_t count = 0;
-  const std::vector<std::int32_t> order = cluster_order(count);
-  dropped_ += particles.count() - count;
-  particles.permute(order, count);
-  for_each_slot(particles.slots(), [&](std::size_t s) { localise(particles, s); });
+  const std::size_t outside = sort_columns(particles, first_pile, block_of);
+  dropped_ += outside;
+  particles.permute(cluster_order(first_pile), particles.count() - outside, first);
+  for_each_slot(particles.slots() - first, [&](std::size_t k) { localise(particles, first + k); });
 }
 
-/// Fills entries_ column by column, each sorted along the column; ties by id, so that the order depends on state alone.
-template <int Dim, class Real> void Neighbours<Dim, Real>::sort_columns(Particles<Dim, Real>& particles) {
-  const std::size_t slots = particles.slots(), columns = grid_.columns();
+/// Fills entries_ pile by pile, each sorted along the column; ties by id, so that the order depends on state alone.
+/// Returns how many particles are outside the domain.
+template <int Dim, class Real>
+std::size_t Neighbours<Dim, Real>::sort_columns(Particles<Dim, Real>& particles, std::size_t first_pile,
+                                                std::span<const Block> block_of) {
+  const std::size_t columns = piles() - first_pile, first = column_begin_[first_pile] * std::size_t{cluster_size};
+  const std::size_t slots = particles.slots() - first;
   const auto x = particles[position];
   const auto ids = particles[id][0];
   std::vector<std::uint32_t> column_of(slots), next(columns + 1, 0);
   constexpr std::uint32_t nowhere = ~0u;
-  for_each_slot(slots, [&](std::size_t s) {
+  for_each_slot(slots, [&](std::size_t k) {
+    const std::size_t s = first + k;
     Cell<Dim> c{};
     bool inside = ids[s] != padding_id;
     for (int d = 0; d < Dim && inside; ++d) {
       inside = grid_.periodic[d] || (x[d][s] >= domain_.lower[d] && x[d][s] <= domain_.upper[d]);
       if (d < Grid<Dim>::along) c[d] = grid_.index(d, x[d][s]);
     }
-    column_of[s] = inside ? static_cast<std::uint32_t>(grid_.column(c)) : nowhere;
+    const std::size_t block = block_of.empty() ? 0 : static_cast<std::size_t>(block_of[s]);
+    column_of[k] = inside ? static_cast<std::uint32_t>(block * grid_.columns() + grid_.column(c)) : nowhere;
   });
-  for (std::size_t s = 0; s < slots; ++s)
-    if (column_of[s] != nowhere) ++next[column_of[s] + 1];
+  std::size_t outside = 0;
+  for (std::size_t k = 0; k < slots; ++k)
+    if (column_of[k] != nowhere)
+      ++next[column_of[k] + 1];
+    else
+      outside += ids[first + k] != padding_id;
   for (std::size_t c = 0; c < columns; ++c) next[c + 1] += next[c];
   entry_begin_.assign(next.begin(), next.end());
   const std::size_t entries = next[columns];
   entries_ = {static_cast<Entry*>(particles.scratch(entries * sizeof(Entry))), entries};
-  for (std::size_t s = 0; s < slots; ++s)
-    if (column_of[s] != nowhere)
-      entries_[next[column_of[s]]++] = {static_cast<float>(x[Dim - 1][s] - grid_.lower[Dim - 1]),
-                                        static_cast<std::int32_t>(s)};
+  for (std::size_t k = 0; k < slots; ++k)
+    if (column_of[k] != nowhere)
+      entries_[next[column_of[k]]++] = {static_cast<float>(x[Dim - 1][first + k] - grid_.lower[Dim - 1]),
+                                        static_cast<std::int32_t>(first + k)};
   const auto before = [ids](const Entry& a, const Entry& b) {
     return a.along != b.along ? a.along < b.along : ids[a.slot] < ids[b.slot];
   };
@@ -172,27 +227,29 @@ template <int Dim, class Real> void Neighbours<Dim, Real>::sort_columns(Particle
     for (std::size_t c = group * 64; c < std::min(columns, (group + 1) * 64); ++c)
       std::sort(entries_.begin() + entry_begin_[c], entries_.begin() + entry_begin_[c + 1], before);
   });
+  return outside;
 }
 
-/// Cuts the sorted columns into clusters; gives cells_ and column_begin_, and for every new slot its old one.
-template <int Dim, class Real> std::vector<std::int32_t> Neighbours<Dim, Real>::cluster_order(std::size_t& count) {
-  const std::size_t columns = grid_.columns();
+/// Cuts the sorted piles into clusters; gives their cells_ and column_begin_, and for every new slot its old one.
+template <int Dim, class Real> std::vector<std::int32_t> Neighbours<Dim, Real>::cluster_order(std::size_t first_pile) {
+  const std::size_t columns = piles() - first_pile;
   const float longest = static_cast<float>(longest_cluster * settings_.spacing);
   const auto cluster_end = [&](std::uint32_t begin, std::uint32_t end) {
     std::uint32_t k = begin + 1;
     while (k < end && k < begin + cluster_size && entries_[k].along - entries_[begin].along <= longest) ++k;
     return k;
   };
-  column_begin_.assign(columns + 1, 0);
+  std::uint32_t* const cluster_begin = column_begin_.data() + first_pile;
+  std::fill_n(cluster_begin + 1, columns, 0);
   for_each_piece((columns + 63) / 64, [&](std::size_t group) {
     for (std::size_t c = group * 64; c < std::min(columns, (group + 1) * 64); ++c)
       for (std::uint32_t k = entry_begin_[c]; k < entry_begin_[c + 1]; k = cluster_end(k, entry_begin_[c + 1]))
-        ++column_begin_[c + 1];
+        ++cluster_begin[c + 1];
   });
-  for (std::size_t c = 0; c < columns; ++c) column_begin_[c + 1] += column_begin_[c];
-  const std::size_t clusters = column_begin_[columns];
-  cells_.resize(clusters);
-  std::vector<std::int32_t> order(clusters * cluster_size, -1);
+  for (std::size_t c = 0; c < columns; ++c) cluster_begin[c + 1] += cluster_begin[c];
+  const std::uint32_t first = cluster_begin[0], end = cluster_begin[columns];
+  cells_.resize(end);
+  std::vector<std::int32_t> order(std::size_t{end - first} * cluster_size, -1);
   for_each_piece((columns + 63) / 64, [&](std::size_t group) {
     for (std::size_t c = group * 64; c < std::min(columns, (group + 1) * 64); ++c) {
       Cell<Dim> cell{};
@@ -200,33 +257,42 @@ template <int Dim, class Real> std::vector<std::int32_t> Neighbours<Dim, Real>::
         cell[d] = static_cast<std::int32_t>(rest % grid_.cells[d]);
         rest /= grid_.cells[d];
       }
-      std::uint32_t cluster = column_begin_[c];
+      std::uint32_t cluster = cluster_begin[c];
       for (std::uint32_t k = entry_begin_[c]; k < entry_begin_[c + 1]; ++cluster) {
-        const std::uint32_t end = cluster_end(k, entry_begin_[c + 1]);
+        const std::uint32_t next = cluster_end(k, entry_begin_[c + 1]);
         cell[Dim - 1] = grid_.index(Dim - 1, grid_.lower[Dim - 1] + entries_[k].along);
         cells_[cluster] = cell;
-        for (int i = 0; k < end; ++k, ++i) order[cluster * cluster_size + i] = entries_[k].slot;
+        for (std::size_t i = std::size_t{cluster - first} * cluster_size; k < next; ++k, ++i)
+          order[i] = entries_[k].slot;
       }
     }
   });
-  count = entries_.size();
   return order;
 }
 
 // ---- the list -------------------------------------------------------------------------------------------------------
 
-template <int Dim, class Real> void Neighbours<Dim, Real>::find_boxes(Particles<Dim, Real>& particles) {
+template <int Dim, class Real> void Neighbours<Dim, Real>::place_boxes(Particles<Dim, Real>& particles) {
   constexpr float out_of_reach = std::numeric_limits<float>::max() / 4;
   const std::size_t length = clusters() + boxes_at_once;
-  auto* memory = static_cast<float*>(particles.scratch(2 * Dim * length * sizeof(float)));
+  const bool lasting = piles() > grid_.columns();
+  auto* memory = lasting ? nullptr : static_cast<float*>(particles.scratch(2 * Dim * length * sizeof(float)));
   for (int d = 0; d < Dim; ++d)
-    for (float** side : {&boxes_.lower[d], &boxes_.upper[d]}) {
-      *side = memory;
-      std::fill_n(memory + clusters(), boxes_at_once, out_of_reach);
-      memory += length;
+    for (const bool upper : {false, true}) {
+      float*& side = upper ? boxes_.upper[d] : boxes_.lower[d];
+      std::vector<float>& own = lasting_boxes_[2 * d + upper];
+      if (lasting) own.resize(length);
+      side = lasting ? own.data() : memory + (2 * d + upper) * length;
+      std::fill_n(side + clusters(), boxes_at_once, out_of_reach);
     }
+}
+
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::find_boxes(Particles<Dim, Real>& particles, std::size_t first_cluster) {
+  place_boxes(particles);
   const auto local = particles[local_position];
-  for_each_slot(clusters(), [&](std::size_t c) {
+  for_each_slot(clusters() - first_cluster, [&](std::size_t k) {
+    const std::size_t c = first_cluster + k;
     for (int d = 0; d < Dim; ++d) {
       Real lower = std::numeric_limits<Real>::max(), upper = std::numeric_limits<Real>::lowest();
       for (std::size_t s = c * cluster_size; s < (c + 1) * cluster_size; ++s) {
@@ -331,14 +397,19 @@ template <int Dim, class Real> class Neighbours<Dim, Real>::Lister {
       else if (column[d] < 0 || column[d] >= grid.cells[d])
         return;
     }
-    const std::size_t number = grid.column(column);
+    offset[along] = 0;
+    for (std::size_t pile = grid.column(column); pile < n_.piles(); pile += grid.columns()) add_pile(pile, offset);
+  }
+
+  void add_pile(std::size_t pile, const Cell<Dim>& offset) {
+    const Grid<Dim>& grid = n_.grid_;
     const double length = grid.cells[along] * grid.width[along];
     const int images = grid.periodic[along] ? 1 + static_cast<int>(slack_ / length) : 0;
+    if (n_.column_begin_[pile] == n_.column_begin_[pile + 1]) return;
     for (int image = -images; image <= images; ++image) {
-      Target target{n_.column_begin_[number], n_.column_begin_[number + 1], {}, 0};
+      Target target{n_.column_begin_[pile], n_.column_begin_[pile + 1], {}, 0};
       for (int d = 0; d < along; ++d) target.shift[d] = static_cast<float>(offset[d] * grid.width[d]);
       target.shift[along] = static_cast<float>(image * length);
-      offset[along] = 0;
       target.number = static_cast<std::int32_t>(n_.shifts_.number(offset)) + image * grid.cells[along];
       targets_.push_back(target);
     }
@@ -420,18 +491,29 @@ template <int Dim, class Real> class Neighbours<Dim, Real>::Lister {
 
 template <int Dim, class Real> void Neighbours<Dim, Real>::list_neighbours(const Particles<Dim, Real>& particles) {
   number_shifts();
-  const std::size_t count = (clusters() + clusters_a_chunk - 1) / clusters_a_chunk;
-  chunks_.resize(count);
+  const std::size_t warm = first_slot(Block::warm) / cluster_size, active = first_slot(Block::active) / cluster_size;
+  warm_chunks_ = (active - warm + clusters_a_chunk - 1) / clusters_a_chunk;
+  chunks_.resize(warm_chunks_ + (clusters() - active + clusters_a_chunk - 1) / clusters_a_chunk);
+  list_clusters(warm, active, 0, particles);
+  list_clusters(active, clusters(), warm_chunks_, particles);
+}
+
+/// Lists the clusters from begin to end in the chunks from first_chunk on.
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::list_clusters(std::size_t begin, std::size_t end, std::size_t first_chunk,
+                                          const Particles<Dim, Real>& particles) {
+  const std::size_t count = (end - begin + clusters_a_chunk - 1) / clusters_a_chunk;
   for_each_piece_with(count, Lister(*this, particles), [&](std::size_t k, Lister& lister) {
-    ClusterChunk& chunk = chunks_[k];
-    chunk.begin = static_cast<std::uint32_t>(k * clusters_a_chunk);
-    chunk.end = static_cast<std::uint32_t>(std::min<std::size_t>(clusters(), (k + 1) * clusters_a_chunk));
+    ClusterChunk& chunk = chunks_[first_chunk + k];
+    chunk.begin = static_cast<std::uint32_t>(begin + k * clusters_a_chunk);
+    chunk.end = static_cast<std::uint32_t>(std::min(end, begin + (k + 1) * clusters_a_chunk));
     lister.list(chunk);
   });
 }
 
 template <int Dim, class Real> std::size_t Neighbours<Dim, Real>::bytes() const {
   std::size_t sum = bytes_of(cells_) + bytes_of(column_begin_) + bytes_of(entry_begin_) + bytes_of(chunks_);
+  for (const std::vector<float>& side : lasting_boxes_) sum += bytes_of(side);
   for (const ClusterChunk& c : chunks_) sum += bytes_of(c.entries) + bytes_of(c.entry_begin);
   return sum;
 }

@@ -54,12 +54,25 @@ template <int Dim> struct Domain {
   Periodicity<Dim> periodic;
 };
 
+/// The order of slots where particles sleep (sleep.h): each block is sorted for itself. `asleep` has no lists, `warm`
+/// has lists of its own. A run without sleep has one block, all active.
+enum class Block : std::uint8_t { asleep, warm, active };
+inline constexpr std::size_t block_count = 3;
+
 template <int Dim, class Real> class Neighbours {
  public:
   Neighbours(const NeighbourSettings& settings, const Domain<Dim>& domain);
 
   /// Sorts the particles, drops those outside the domain, and lists the clusters' neighbours.
   void rebuild(Particles<Dim, Real>& particles);
+
+  /// The same, in blocks: block_of has that of each slot. The grid gets a margin for the active ones to move into.
+  void rebuild(Particles<Dim, Real>& particles, std::span<const Block> block_of);
+  /// The same for the active block alone: those in the other blocks keep their slots. All must be within the grid.
+  void rebuild_active(Particles<Dim, Real>& particles);
+  bool covers_active(const Particles<Dim, Real>& particles) const;
+  /// The first slot of a block; without blocks, all are active.
+  std::size_t first_slot(Block block) const;
 
   /// True when a particle may have moved half a skin since the last build.
   bool is_due() const { return 2 * displacement_ > settings_.skin; }
@@ -69,7 +82,9 @@ template <int Dim, class Real> class Neighbours {
 
   const Grid<Dim>& grid() const { return grid_; }
   const NeighbourSettings& settings() const { return settings_; }
-  std::span<const ClusterChunk> chunks() const { return chunks_; }
+  /// The lists of active clusters, and of warm ones.
+  std::span<const ClusterChunk> chunks() const { return std::span(chunks_).subspan(warm_chunks_); }
+  std::span<const ClusterChunk> warm_chunks() const { return std::span(chunks_).first(warm_chunks_); }
   const ShiftTable<Dim>& shifts() const { return shifts_; }
   const Cell<Dim>& cell(std::size_t cluster) const { return cells_[cluster]; }
   std::size_t clusters() const { return cells_.size(); }
@@ -86,18 +101,24 @@ template <int Dim, class Real> class Neighbours {
 
  private:
   /// Bounding boxes of the clusters (m): across relative to the column's origin, along from the grid's lower end. Some
-  /// boxes out of reach follow the last, for loops that take several at once. While listing, in the particles' scratch.
+  /// boxes out of reach follow the last, for loops that take several at once. While listing, in the particles' scratch;
+  /// with blocks, they last from list to list.
   struct Boxes {
     float *lower[Dim], *upper[Dim];
   };
   class Lister;
-  void choose_grid(const Particles<Dim, Real>& particles);
+  void choose_grid(const Particles<Dim, Real>& particles, const Cell<Dim>& margin);
   void choose_quantum();
-  void sort(Particles<Dim, Real>& particles);
-  void sort_columns(Particles<Dim, Real>& particles);
-  std::vector<std::int32_t> cluster_order(std::size_t& count);
-  void find_boxes(Particles<Dim, Real>& particles);
+  /// Piles are the columns of each block, one block after another.
+  std::size_t piles() const { return column_begin_.size() - 1; }
+  void sort(Particles<Dim, Real>& particles, std::size_t first_pile, std::span<const Block> block_of);
+  std::size_t sort_columns(Particles<Dim, Real>& particles, std::size_t first_pile, std::span<const Block> block_of);
+  std::vector<std::int32_t> cluster_order(std::size_t first_pile);
+  void place_boxes(Particles<Dim, Real>& particles);
+  void find_boxes(Particles<Dim, Real>& particles, std::size_t first_cluster);
   void list_neighbours(const Particles<Dim, Real>& particles);
+  void list_clusters(std::size_t begin, std::size_t end, std::size_t first_chunk,
+                     const Particles<Dim, Real>& particles);
   void number_shifts();
   double list_range() const;
   NeighbourSettings settings_;
@@ -106,17 +127,19 @@ template <int Dim, class Real> class Neighbours {
   double displacement_ = 0;
   std::size_t dropped_ = 0;
   std::vector<Cell<Dim>> cells_;             // of the clusters
-  std::vector<std::uint32_t> column_begin_;  // first cluster of each column, and the end
+  std::vector<std::uint32_t> column_begin_;  // first cluster of each pile, and the end
   Boxes boxes_;
+  std::array<std::vector<float>, 2 * Dim> lasting_boxes_;  // with blocks
   ShiftTable<Dim> shifts_;
-  std::vector<ClusterChunk> chunks_;
+  std::vector<ClusterChunk> chunks_;  // warm ones first
+  std::size_t warm_chunks_ = 0;
 
   struct Entry {
     float along;        // position along the column, m from the grid's lower end
     std::int32_t slot;  // old slot
   };
   std::span<Entry> entries_;                // while sorting, in the particles' scratch
-  std::vector<std::uint32_t> entry_begin_;  // by column
+  std::vector<std::uint32_t> entry_begin_;  // by pile
 };
 
 /// All pairs within the support by brute force: the twin that tests hold the list against. Slots, both directions,

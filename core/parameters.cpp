@@ -54,6 +54,19 @@ template <int Dim> Domain<Dim> domain_of(const Scene& scene, const Extent& exten
   return domain;
 }
 
+/// A thousandth of the sound speed, so a hundredth of the fastest flow; the density rate of a particle that moves so
+/// against its neighbours; a thousandth of the temperatures' range in the time that heat takes to cross a smoothing
+/// length. Held for as long as sound needs to cross forty smoothing lengths.
+template <int Dim> RestBounds rest_bounds(const SleepBounds& scene, const Parameters<Dim>& p, double hot_to_cold) {
+  RestBounds r;
+  const double h = p.smoothing_length, sound = p.eos.sound_speed;
+  r.speed = scene.speed.value_or(1e-3 * sound);
+  r.density_rate = scene.density_rate.value_or(r.speed / h);
+  r.temperature_rate = scene.temperature_rate.value_or(1e-3 * hot_to_cold * p.diffusivity / (h * h));
+  r.after = scene.after.value_or(40 * h / sound);
+  return r;
+}
+
 }  // namespace
 
 template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start& start) {
@@ -78,6 +91,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.viscosity = r.viscosity;
   p.rheology = r;
   if (r.model == Rheology::Model::smd) p.smd = Smd(r.flow_index, r.yield_stress, r.consistency, r.jump_number);
+  double hot_to_cold = 0;  // K
   if (scene.fluid.heat) {
     p.diffusivity = scene.fluid.heat->diffusivity;
     if (scene.fluid.heat->melting_range) {
@@ -86,6 +100,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
     }
     const auto [low, high] = std::minmax_element(start.temperature.begin(), start.temperature.end());
     p.reference_temperature = (*low + *high) / 2;
+    hot_to_cold = *high - *low;
   }
   p.artificial_viscosity = n.artificial_viscosity;
   p.density_diffusion = n.density_diffusion;
@@ -101,6 +116,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.courant_conduction = n.courant_conduction;
   p.fixed_dt = n.fixed_dt;
   p.sort_each_step = n.resort == Resort::each_step;
+  if (n.sleep) p.rest = rest_bounds(*n.sleep, p, hot_to_cold);
   p.domain = domain_of<Dim>(scene, extent, start.spacing);
   return p;
 }

@@ -11,6 +11,7 @@
 #include "core/physics/pressure.h"
 #include "core/physics/rheology.h"
 #include "core/scene.h"
+#include "core/sleep.h"
 
 namespace molten {
 
@@ -42,6 +43,7 @@ template <int Dim> struct Parameters {
   double courant_sound = 0, courant_viscous = 0, courant_force = 0, courant_conduction = 0;
   std::optional<double> fixed_dt;  // s
   bool sort_each_step = false;
+  std::optional<RestBounds> rest;  // within which particles fall asleep
   Domain<Dim> domain;
 };
 

@@ -11,31 +11,35 @@
 
 namespace molten {
 
-void Buffer::resize(std::size_t bytes) {
+void Buffer::resize(std::size_t bytes, std::size_t kept) {
   if (bytes <= capacity_) return;
   constexpr std::size_t page = std::size_t{1} << 21;
   const std::size_t alignment = bytes >= page ? page : 64;
   const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
-  data_.reset(std::aligned_alloc(alignment, rounded));
+  std::unique_ptr<void, Free> old =
+      std::exchange(data_, std::unique_ptr<void, Free>(std::aligned_alloc(alignment, rounded)));
   if (!data_) throw std::bad_alloc();
+  if (kept == 0) old.reset();
   if (alignment == page) madvise(data_.get(), rounded, MADV_HUGEPAGE);
-  capacity_ = rounded;
   for_each_piece((rounded + page - 1) / page, [&](std::size_t k) {
     std::memset(static_cast<char*>(data_.get()) + k * page, 0, std::min(page, rounded - k * page));
   });
+  if (kept > 0) std::memcpy(data_.get(), old.get(), std::min(kept, capacity_));
+  capacity_ = rounded;
 }
 
 template <int Dim, class Real> Particles<Dim, Real>::Particles(FieldSet active) : active_(active) {
   active_ |= field_set(FieldList<Id, LocalPosition>{});
 }
 
-template <int Dim, class Real> void Particles<Dim, Real>::resize(std::size_t slots, std::size_t count) {
+template <int Dim, class Real>
+void Particles<Dim, Real>::resize(std::size_t slots, std::size_t count, std::size_t kept) {
   slots_ = slots;
   count_ = count;
   for_each_field([&]<class F>(F) {
     if (!active_.test(field_index<F>)) return;
     for (int k = 0; k < components<F, Dim>; ++k)
-      columns_[first_component<F>() + k].resize(slots * sizeof(stored_t<F, Real>));
+      columns_[first_component<F>() + k].resize(slots * sizeof(stored_t<F, Real>), kept * sizeof(stored_t<F, Real>));
   });
 }
 
@@ -46,24 +50,32 @@ template <int Dim, class Real> std::size_t Particles<Dim, Real>::bytes() const {
 }
 
 template <int Dim, class Real>
-void Particles<Dim, Real>::permute(std::span<const std::int32_t> order, std::size_t count) {
+void Particles<Dim, Real>::permute(std::span<const std::int32_t> order, std::size_t count, std::size_t first) {
+  const std::size_t slots = first + order.size();
   for_each_field([&]<class F>(F) {
     if (!active_.test(field_index<F>) || F::lifetime == Lifetime::step) return;
     using T = stored_t<F, Real>;
     constexpr T filling = F::storage == Storage::id ? T(padding_id) : T(0);
-    // A column changes places with one of its size whose contents are not needed.
+    // A column changes places with one of its size whose contents are not needed; or, where slots stay, the rest goes
+    // there and back.
     Buffer& spare = F::storage == Storage::real ? columns_[first_component<LocalPosition>()] : scratch_;
-    spare.resize(order.size() * sizeof(T));
+    spare.resize(slots * sizeof(T), first * sizeof(T));
     for (int k = 0; k < components<F, Dim>; ++k) {
       Buffer& column = columns_[first_component<F>() + k];
       const T* from = static_cast<const T*>(column.data());
-      T* to = static_cast<T*>(spare.data());
+      T* to = static_cast<T*>(spare.data()) + first;
       for_each_slot(order.size(), [&](std::size_t s) { to[s] = order[s] < 0 ? filling : from[order[s]]; });
-      column.swap(spare);
-      spare.resize(order.size() * sizeof(T));
+      if (first == 0) {
+        column.swap(spare);
+        spare.resize(slots * sizeof(T));
+      } else {
+        column.resize(slots * sizeof(T), first * sizeof(T));
+        T* back = static_cast<T*>(column.data()) + first;
+        for_each_slot(order.size(), [&](std::size_t s) { back[s] = to[s]; });
+      }
     }
   });
-  resize(order.size(), count);
+  resize(slots, count, first);
 }
 
 template <int Dim, class Real> void Particles<Dim, Real>::archive(Archive& a) {

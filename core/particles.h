@@ -29,7 +29,8 @@ template <class... F> FieldSet field_set(FieldList<F...>) {
 /// Memory on cache-line (large: huge-page) boundaries, zero at first.
 class Buffer {
  public:
-  void resize(std::size_t bytes);  // contents are lost when it has to grow
+  /// When it has to grow, all but the first `kept` bytes are lost.
+  void resize(std::size_t bytes, std::size_t kept = 0);
   void* data() const { return data_.get(); }
   std::size_t capacity() const { return capacity_; }
   void swap(Buffer& other) noexcept { std::swap(data_, other.data_), std::swap(capacity_, other.capacity_); }
@@ -62,8 +63,9 @@ template <int Dim, class Real> class Particles {
  public:
   explicit Particles(FieldSet active);
 
-  /// Room for `slots` slots (a multiple of cluster_size); contents are lost. `count` of them are particles.
-  void resize(std::size_t slots, std::size_t count);
+  /// Room for `slots` slots (a multiple of cluster_size); contents are lost but for the first `kept` slots. `count` of
+  /// them are particles.
+  void resize(std::size_t slots, std::size_t count, std::size_t kept = 0);
 
   std::size_t slots() const { return slots_; }
   std::size_t count() const { return count_; }
@@ -83,9 +85,9 @@ template <int Dim, class Real> class Particles {
 
   bool is_padding(std::size_t slot) const { return (*this)[id][0][slot] == padding_id; }
 
-  /// New slot s takes old slot order[s]; -1 makes it padding (id -1, all else zero). Fields that live for a step are
-  /// lost.
-  void permute(std::span<const std::int32_t> order, std::size_t count);
+  /// New slot first + s takes old slot order[s]; -1 makes it padding (id -1, all else zero). There, fields that live
+  /// for a step are lost. Slots before `first` stay as they are.
+  void permute(std::span<const std::int32_t> order, std::size_t count, std::size_t first = 0);
 
   /// Memory that lasts until the next permute, for whoever sorts: `bytes` of it, at best no more than 8 a slot.
   void* scratch(std::size_t bytes) {

@@ -115,6 +115,7 @@ void run_rates_pass_with(State<Dim, Real>& s, const With& with, const Terms&... 
   });
   s.extremes = joined(extremes);
   if (s.features.laminar) s.extremes.kinematic_viscosity = s.parameters.viscosity / s.parameters.eos.rest_density;
+  if (s.features.sleep) s.extremes.kinematic_viscosity = std::max(s.extremes.kinematic_viscosity, s.sleep.viscosity);
 }
 
 template <int Dim, class Real, class... Terms> void run_rates_pass(State<Dim, Real>& s, const Terms&... terms) {

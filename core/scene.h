@@ -170,6 +170,14 @@ struct DensityFilter {
   long long every = 30;  // steps
 };
 
+/// Bounds within which a particle is at rest; defaults from the scene (parameters.cpp).
+struct SleepBounds {
+  std::optional<double> speed;             // m/s
+  std::optional<double> density_rate;      // 1/s; rate of density over the rest density
+  std::optional<double> temperature_rate;  // K/s
+  std::optional<double> after;             // s at rest before a particle may sleep
+};
+
 struct Numerics {
   std::string preset = "molten";
   Precision precision = Precision::single;
@@ -199,6 +207,7 @@ struct Numerics {
   double density_diffusion = 0;    // δ of δ-SPH; 0: no term
   bool wall_support = false;       // walls make up for what they cut off a particle's support
   std::optional<double> fixed_dt;  // s; overrides the adaptive step
+  std::optional<SleepBounds> sleep;
 };
 
 // ---- the whole --------------------------------------------------------------------------------------------------

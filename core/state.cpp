@@ -44,6 +44,8 @@ template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
   a.vector("neighbours/near_wall", near_wall);  // as of the last sort: where the particles are now tells otherwise
   if (features.wall_support) wall_support.archive(a);
   if (a.loading()) neighbours.relist(particles);
+  if (features.sleep) sleep.archive(a);
+  if (features.sleep && a.loading()) mark_sleepers(*this);
 }
 
 template <int Dim, class Real>

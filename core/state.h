@@ -11,6 +11,7 @@
 #include "core/neighbours.h"
 #include "core/parameters.h"
 #include "core/particles.h"
+#include "core/sleep.h"
 #include "core/timer.h"
 
 namespace molten {
@@ -48,10 +49,12 @@ template <int Dim, class Real> struct State {
   Clock clock;                          // this step
   Extremes extremes;
   Timer timer;
+  Sleep sleep{};
 
   void archive(Archive& a);
   std::size_t bytes() const {
-    return particles.bytes() + neighbours.bytes() + near_wall.capacity() + wall_support.bytes();
+    return particles.bytes() + neighbours.bytes() + near_wall.capacity() + wall_support.bytes() +
+           sleep.cells.capacity();
   }
 };
 

@@ -17,6 +17,7 @@ bool is_multiple(std::int64_t step, std::int64_t every) { return step > 0 && ste
 }  // namespace
 
 template <int Dim, class Real> void step(State<Dim, Real>& s) {
+  if (s.features.sleep) wake_and_rest(s);
   const bool filter = s.features.density_filter && is_multiple(s.clock.step, s.parameters.density_filter.every);
   if (filter) filter_density(s);
   if (!s.features.reuses_rates() || s.clock.step == 0 || filter) find_all_rates(s);
@@ -46,10 +47,10 @@ template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s) {
 }
 
 template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s) {
+  if (s.features.sleep) return sort_active(s);
   const auto scope = s.timer.scope("sort and list");
   s.neighbours.rebuild(s.particles);
   mark_near_wall(s);
-  if (s.features.wall_support) s.wall_support.mark(s.particles);
   prepare(s);
 }
 
@@ -58,7 +59,9 @@ template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s) {
   s.near_wall.assign(s.neighbours.clusters(), 0);
   if (!s.features.contact) return;
   const auto x = s.particles[position];
-  for_each_slot(s.neighbours.clusters(), [&](std::size_t c) {
+  const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
+  for_each_slot(s.neighbours.clusters() - first, [&](std::size_t n) {
+    const std::size_t c = first + n;
     for (std::size_t k = c * cluster_size; k < (c + 1) * cluster_size; ++k) {
       if (s.particles.is_padding(k)) continue;
       Point<Dim> point;
@@ -66,6 +69,7 @@ template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s) {
       if (s.contact.may_touch(point, s.parameters.spacing)) s.near_wall[c] = 1;
     }
   });
+  if (s.features.wall_support) s.wall_support.mark(s.particles, first * cluster_size);
 }
 
 template <int Dim, class Real> void require_sane(const State<Dim, Real>& s) {

@@ -130,6 +130,10 @@ TEST(Features, DensityFiltersAndSummationAddTheirPasses) {
   expect_adds([](Scene& s) { s.numerics.density = DensityForm::summation; }, {{}, {}, {"density"}});
 }
 
+TEST(Features, SleepAddsItsColumnAndItsPass) {
+  expect_adds([](Scene& s) { s.numerics.sleep.emplace(); }, {{"rest_time"}, {}, {"wake and rest"}});
+}
+
 TEST(Features, WallsAddTheirPass) {
   expect_adds([](Scene& s) { s.boundaries.emplace_back(); }, {{}, {"integrate"}, {"integrate and collide"}});
 }
@@ -199,6 +203,8 @@ TEST(Features, RefusesWhatMakesNoSense) {
         s.periodic = {true, false, false};
       },
       "scene.periodic: a periodic axis needs scene.domain");
+  expect_refused([](Scene& s) { s.numerics.sleep.emplace().temperature_rate = 1; },
+                 "numerics.sleep.temperature_rate: ");
 }
 
 TEST(Features, TakesWhatMakesSense) {

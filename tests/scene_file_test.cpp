@@ -107,6 +107,21 @@ TEST(SceneFile, DensityAndStateEquation) {
   EXPECT_EQ(numerics("integrator = \"runge_kutta_4\"").integrator, IntegratorKind::runge_kutta_4);
 }
 
+TEST(SceneFile, SleepIsAbsentUnlessAskedFor) {
+  EXPECT_FALSE(parse_scene(good, "s.toml").numerics.sleep);
+  const auto bare = parse_scene(good, "s.toml", {"numerics.sleep={}"}).numerics.sleep;
+  ASSERT_TRUE(bare);
+  EXPECT_FALSE(bare->speed || bare->density_rate || bare->temperature_rate || bare->after);
+  const auto full = parse_scene(good, "s.toml",
+                                {"numerics.sleep={ speed = 0.1, density_rate = 2, temperature_rate = 0, after = 0.5 }"})
+                        .numerics.sleep;
+  ASSERT_TRUE(full);
+  EXPECT_EQ(full->speed, 0.1);
+  EXPECT_EQ(full->density_rate, 2);
+  EXPECT_EQ(full->temperature_rate, 0);
+  EXPECT_EQ(full->after, 0.5);
+}
+
 TEST(SceneFile, DesignExampleParsesAsPrinted) {
   const Scene scene = parse_scene(design, "s.toml");
   EXPECT_EQ(scene.title, "Bunny melts from the ears down");

@@ -58,6 +58,9 @@ const std::vector<Mistake> mistakes = {
     {"diffusivity = 1e-4", "diffusivity = -1e-4", "fluid.heat.diffusivity"},
     {"courant = { sound = 0.15 }", "courant = { sound = 0 }", "numerics.courant.sound: 0"},
     {"xsph = { epsilon = 0.4 }", "xsph = { epsilon = 2 }", "numerics.xsph.epsilon: 2"},
+    {"courant = { sound = 0.15 }", "sleep = { speed = 0 }", "numerics.sleep.speed: 0 is out of range"},
+    {"courant = { sound = 0.15 }", "sleep = true", "sleep: is true or false; give a table: speed"},
+    {"courant = { sound = 0.15 }", "sleep = { velocity = 1 }", "velocity"},
     // vectors
     {"gravity = [0.0, 0.0, -9.81]", "gravity = [0.0, -9.81]",
      "s.toml:4:11: scene.gravity: has 2 entries; give 3 numbers"},

@@ -12,11 +12,15 @@ WallSupport<Dim>::WallSupport(const Contact<Dim>& contact, const Parameters<Dim>
       walls_(contact.walls()),
       reach_(integrals_->reach() + p.skin) {}
 
-template <int Dim> template <class Real> void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles) {
+template <int Dim>
+template <class Real>
+void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t first_slot) {
   const std::size_t clusters = particles.slots() / cluster_size;
   plane_.assign(clusters, no_plane);
   const auto x = particles[position];
-  for_each_slot(clusters, [&](std::size_t c) {
+  const std::size_t first = first_slot / cluster_size;
+  for_each_slot(clusters - first, [&](std::size_t n) {
+    const std::size_t c = first + n;
     for (std::size_t slot = c * cluster_size; slot < (c + 1) * cluster_size; ++slot) {
       if (particles.is_padding(slot)) continue;
       Point<Dim> point;
@@ -34,9 +38,9 @@ template <int Dim> std::size_t WallSupport<Dim>::bytes() const {
 
 template class WallSupport<2>;
 template class WallSupport<3>;
-template void WallSupport<2>::mark(const Particles<2, float>&);
-template void WallSupport<2>::mark(const Particles<2, double>&);
-template void WallSupport<3>::mark(const Particles<3, float>&);
-template void WallSupport<3>::mark(const Particles<3, double>&);
+template void WallSupport<2>::mark(const Particles<2, float>&, std::size_t);
+template void WallSupport<2>::mark(const Particles<2, double>&, std::size_t);
+template void WallSupport<3>::mark(const Particles<3, float>&, std::size_t);
+template void WallSupport<3>::mark(const Particles<3, double>&, std::size_t);
 
 }  // namespace molten

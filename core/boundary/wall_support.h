@@ -20,7 +20,8 @@ template <int Dim> class WallSupport {
   WallSupport() = default;
   WallSupport(const Contact<Dim>& contact, const Parameters<Dim>& parameters);
 
-  template <class Real> void mark(const Particles<Dim, Real>& particles);
+  /// Finds the planes near the particles from `first_slot` on; the others are not asked for.
+  template <class Real> void mark(const Particles<Dim, Real>& particles, std::size_t first_slot);
 
   /// What the cluster may reach: the number of a plane, or one of the two below.
   std::int32_t plane(std::size_t cluster) const { return plane_.empty() ? no_plane : plane_[cluster]; }

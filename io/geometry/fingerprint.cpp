@@ -33,6 +33,9 @@ void add_numerics(Hash& hash, const Numerics& n) {
         n.xsph ? n.xsph->epsilon : 0, n.courant_sound, n.courant_viscous, n.courant_force, n.courant_conduction,
         n.fixed_dt.value_or(0), n.density_diffusion, n.wall_support ? 1.0 : 0.0})
     hash.add(number);
+  if (n.sleep)
+    for (const auto& bound : {n.sleep->speed, n.sleep->density_rate, n.sleep->temperature_rate, n.sleep->after})
+      hash.add(bound.value_or(-1));
 }
 
 }  // namespace

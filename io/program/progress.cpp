@@ -33,15 +33,17 @@ Progress::Progress(double start_time, double end_time, double initial_energy)
 
 bool Progress::is_due() const { return since(last_) > (terminal_ ? terminal_interval : plain_interval); }
 
-void Progress::show(const Clock& clock, std::int64_t particles, double energy) {
+void Progress::show(const Clock& clock, const Diagnostics& now) {
+  const double energy = now.kinetic_energy + now.potential_energy;
   const double lap = since(last_), done = clock.time - start_time_, all = end_time_ - start_time_;
-  const double rate = last_step_ < 0 ? 0 : static_cast<double>((clock.step - last_step_) * particles) / lap;
+  const double rate = last_step_ < 0 ? 0 : static_cast<double>((clock.step - last_step_) * now.particles) / lap;
   const double left = done > 0 ? since(begun_) * (all - done) / done : 0;
   const double drift = initial_energy_ != 0 ? 100 * (energy - initial_energy_) / std::abs(initial_energy_) : 0;
-  std::string line =
-      fmt::format("{:5.1f} %  t {:.4g} of {:.4g} s  step {}  dt {:.3g} s ({})  {} particles  energy {:+.2f} %",
-                  all > 0 ? std::min(100.0, 100 * done / all) : 100, clock.time, end_time_, clock.step, clock.dt,
-                  name_of(clock.limit), particles, drift);
+  std::string line = fmt::format(
+      "{:5.1f} %  t {:.4g} of {:.4g} s  step {}  dt {:.3g} s ({})  {} particles{}  energy {:+.2f} %",
+      all > 0 ? std::min(100.0, 100 * done / all) : 100, clock.time, end_time_, clock.step, clock.dt,
+      name_of(clock.limit), now.particles,
+      now.asleep > 0 ? fmt::format(" ({} moving, {} asleep)", now.particles - now.asleep, now.asleep) : "", drift);
   if (rate > 0) line += fmt::format("  {:.2f} M particle-steps/s", rate / 1e6);
   if (done > 0) line += fmt::format("  {} left", in_words(left));
   fmt::print(stderr, "{}{}{}", terminal_ ? "\r\x1b[K" : "", line, terminal_ ? "" : "\n");

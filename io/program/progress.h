@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "core/state.h"
+#include "core/diagnostics.h"
 
 namespace molten {
 
@@ -16,7 +16,7 @@ class Progress {
 
   /// True when a line is due, so that its figures are worked out only then.
   bool is_due() const;
-  void show(const Clock& clock, std::int64_t particles, double energy);
+  void show(const Clock& clock, const Diagnostics& now);
   void finish();  // ends a rewritten line
 
  private:

@@ -14,10 +14,10 @@ namespace molten {
 /// What summary.json holds; counters are totals over threads and, after a resume, over the whole run.
 struct Summary {
   std::string status;  // "done", "interrupted", "diverged"
-  std::int64_t particles = 0, particles_lost = 0, steps = 0;
+  std::int64_t particles = 0, particles_asleep = 0, particles_lost = 0, steps = 0;
   double simulated_time_s = 0;
-  double wall_time_s = 0;  // of the stepping loop, output not counted
-  double particle_steps = 0, pairs = 0;
+  double wall_time_s = 0;                                  // of the stepping loop, output not counted
+  double particle_steps = 0, asleep_steps = 0, pairs = 0;  // particle_steps counts those asleep, too
   int threads = 0;
   std::size_t state_bytes = 0;
   std::map<std::string, double, std::less<>> passes;  // s

@@ -33,7 +33,7 @@ double seconds_since(std::chrono::steady_clock::time_point t) {
 struct Ledger {
   std::int64_t frame_number = 0;  // of the next frame's file
   std::int64_t rows = 0;          // of series.csv
-  double initial_energy = 0, stepping_seconds = 0, particle_steps = 0, pairs_at_start = 0;
+  double initial_energy = 0, stepping_seconds = 0, particle_steps = 0, asleep_steps = 0, pairs_at_start = 0;
 
   void archive(Archive& a) {
     a.value("run/frame_number", frame_number);
@@ -41,6 +41,7 @@ struct Ledger {
     a.value("run/initial_energy", initial_energy);
     a.value("run/stepping_seconds", stepping_seconds);
     a.value("run/particle_steps", particle_steps);
+    a.value("run/asleep_steps", asleep_steps);
     a.value("run/pairs_at_start", pairs_at_start);
   }
 };
@@ -121,6 +122,7 @@ template <int Dim, class Real> class Runner {
       throw Error(ExitCode::diverged, "all particles have left the domain; enlarge scene.domain or add walls");
     ledger_.stepping_seconds += seconds_since(start);
     ledger_.particle_steps += static_cast<double>(state_.particles.count());
+    ledger_.asleep_steps += static_cast<double>(state_.sleep.asleep);
     write_due();
     if (scene_.output.checkpoint_every > 0 && seconds_since(last_checkpoint_) > scene_.output.checkpoint_every)
       checkpoint();
@@ -160,10 +162,7 @@ template <int Dim, class Real> class Runner {
     state_.archive(a);
   }
 
-  void show_progress() {
-    const Diagnostics d = diagnose(state_);
-    progress_->show(state_.clock, d.particles, d.kinetic_energy + d.potential_energy);
-  }
+  void show_progress() { progress_->show(state_.clock, diagnose(state_)); }
 
   void finish(ExitCode code) {
     show_progress();
@@ -185,11 +184,13 @@ template <int Dim, class Real> class Runner {
     Summary s;
     s.status = status;
     s.particles = static_cast<std::int64_t>(state_.particles.count());
+    s.particles_asleep = state_.sleep.asleep;
     s.particles_lost = static_cast<std::int64_t>(state_.neighbours.dropped());
     s.steps = state_.clock.step;
     s.simulated_time_s = state_.clock.time;
     s.wall_time_s = ledger_.stepping_seconds;
     s.particle_steps = ledger_.particle_steps;
+    s.asleep_steps = ledger_.asleep_steps;
     const double pairs_a_step = (ledger_.pairs_at_start + static_cast<double>(count_pairs(state_))) / 2;
     s.pairs = pairs_a_step * static_cast<double>(state_.clock.step);
     s.threads = omp_get_max_threads();

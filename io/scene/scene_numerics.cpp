@@ -33,7 +33,8 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "density_kernel",
                                         "stiffness",
                                         "wall_support",
-                                        "density_diffusion"};
+                                        "density_diffusion",
+                                        "sleep"};
 
 Numerics read_preset(const TomlReader& keys) {
   std::string name = "molten";
@@ -164,6 +165,16 @@ void read_courant(const TomlReader& keys, Numerics& numerics) {
   table->number("conduction", numerics.courant_conduction, Range::positive(""));
 }
 
+void read_sleep(const TomlReader& keys, Numerics& numerics) {
+  const auto table = keys.table("sleep", {"speed", "density_rate", "temperature_rate", "after"});
+  if (!table) return;
+  SleepBounds& bounds = numerics.sleep.emplace();
+  table->number("speed", bounds.speed, Range::positive("m/s"));
+  table->number("density_rate", bounds.density_rate, Range::positive("1/s"));
+  table->number("temperature_rate", bounds.temperature_rate, Range::not_negative("K/s"));
+  table->number("after", bounds.after, Range::positive("s"));
+}
+
 }  // namespace
 
 Numerics read_numerics(const TomlReader& root) {
@@ -184,6 +195,7 @@ Numerics read_numerics(const TomlReader& root) {
   keys->flag("wall_support", numerics.wall_support);
   keys->number("density_diffusion", numerics.density_diffusion, Range{0, 1, true, ""});
   keys->number("fixed_dt", numerics.fixed_dt, Range::positive("s"));
+  read_sleep(*keys, numerics);
   return numerics;
 }
 

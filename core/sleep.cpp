@@ -1,0 +1,219 @@
+#include "core/sleep.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "core/particle_pass.h"
+#include "core/state.h"
+#include "core/step.h"
+
+namespace molten {
+
+void Sleep::archive(Archive& a) {
+  a.value("sleep/asleep", asleep);
+  a.value("sleep/taken_energy", taken_energy);
+  a.value("sleep/viscosity", viscosity);
+  a.value("sleep/travel", travel);
+  a.value("sleep/waste", waste);
+  a.value("sleep/looked", looked);
+}
+
+namespace {
+
+using Marks = std::vector<std::uint8_t>;  // by cell
+
+/// The cells that wake and sleep: as wide as a list reaches, over the grid of the last sort of all.
+template <int Dim, class Real> class RestCells {
+ public:
+  explicit RestCells(const State<Dim, Real>& s) : x_(s.particles[position]), grid_(s.neighbours.grid()) {
+    double width = s.neighbours.settings().support_radius + s.neighbours.settings().skin;
+    constexpr std::size_t most_cells = 1 << 22;
+    do {
+      for (int d = 0; d < Dim; ++d) {
+        const double length = grid_.cells[d] * grid_.width[d];
+        cells_[d] = std::max(1, static_cast<std::int32_t>(length / width));
+        width_[d] = length / cells_[d];
+      }
+      width *= 2;
+    } while (size() > most_cells);
+  }
+
+  std::size_t size() const {
+    std::size_t n = 1;
+    for (int d = 0; d < Dim; ++d) n *= static_cast<std::size_t>(cells_[d]);
+    return n;
+  }
+
+  std::size_t of(std::size_t slot) const {
+    std::size_t n = 0;
+    for (int d = Dim - 1; d >= 0; --d) {
+      const double k = (x_[d][slot] - grid_.lower[d]) / width_[d];
+      n = n * cells_[d] + static_cast<std::size_t>(std::clamp(k, 0.0, cells_[d] - 1.0));
+    }
+    return n;
+  }
+
+  /// The cells of those slots in [begin, end) for which f(slot).
+  template <class F> Marks of_slots(std::size_t begin, std::size_t end, const F& f) const {
+    Marks marks(size(), 0);
+    for_each_slot(end - begin, [&](std::size_t k) {
+      if (f(begin + k)) std::atomic_ref(marks[of(begin + k)]).store(1, std::memory_order_relaxed);
+    });
+    return marks;
+  }
+
+  /// Adds the cells next to those marked, across corners too.
+  Marks widened(Marks marks) const {
+    std::size_t stride = 1;
+    for (int d = 0; d < Dim; ++d) {
+      const std::size_t n = cells_[d];
+      Marks wide(marks.size());
+      for_each_slot(marks.size(), [&](std::size_t c) {
+        const std::size_t k = c / stride % n, row = c - k * stride;
+        const auto at = [&](std::size_t j) { return marks[row + j * stride]; };
+        const bool wraps = grid_.periodic[d];
+        const bool below = k > 0 ? at(k - 1) : wraps && at(n - 1), above = k + 1 < n ? at(k + 1) : wraps && at(0);
+        wide[c] = at(k) || below || above;
+      });
+      marks.swap(wide);
+      stride *= n;
+    }
+    return marks;
+  }
+
+ private:
+  Column<Position, Dim, double> x_;
+  const Grid<Dim>& grid_;
+  std::array<std::int32_t, Dim> cells_{};
+  std::array<double, Dim> width_{};  // m
+};
+
+/// Puts one particle to rest: nothing moves or changes, nothing is left of the last step's sums.
+template <int Dim, class Real> void lay_down(State<Dim, Real>& s, std::size_t slot) {
+  Particles<Dim, Real>& p = s.particles;
+  const auto clear = [&]<class F>(F field) {
+    if (!p.has(field)) return;
+    for (auto* column : p[field].c) column[slot] = 0;
+  };
+  for_each_field([&]<class F>(F field) {
+    if constexpr (F::lifetime == Lifetime::step && !std::is_same_v<F, LocalPosition>) clear(field);
+  });
+  clear(velocity), clear(half_velocity), clear(previous_compression_rate), clear(older_compression_rate);
+  if (p.has(half_compression)) p[half_compression][0][slot] = p[compression][0][slot];
+  if (s.features.stress)
+    p[viscosity][0][slot] =
+        static_cast<Real>(s.parameters.viscosity_at(0.0, s.features.heat ? p[temperature][0][slot] : 0.0));
+}
+
+template <int Dim, class Real> double kinetic_energy(const State<Dim, Real>& s, std::size_t slot) {
+  double v2 = 0;
+  for (int d = 0; d < Dim; ++d) v2 += double(s.particles[velocity][d][slot]) * s.particles[velocity][d][slot];
+  return s.parameters.particle_mass * v2 / 2;
+}
+
+/// What the sleepers are, all told; of those in slots below `end`.
+template <int Dim, class Real> void take_stock(State<Dim, Real>& s, std::size_t end) {
+  struct Stock {
+    std::int64_t count = 0;
+    double energy = 0, viscosity = 0;
+  };
+  const Particles<Dim, Real>& p = s.particles;
+  const Stock stock = reduce_slots(
+      end, Stock{},
+      [&](std::size_t slot, Stock& sum) {
+        if (p.is_padding(slot)) return;
+        ++sum.count;
+        sum.energy += kinetic_energy(s, slot);
+        lay_down(s, slot);
+        if (s.features.stress)
+          sum.viscosity = std::max(sum.viscosity, p[viscosity][0][slot] / (s.parameters.eos.rest_density *
+                                                                           (1 + double(p[compression][0][slot]))));
+      },
+      [](Stock& a, const Stock& b) {
+        a.count += b.count;
+        a.energy += b.energy;
+        a.viscosity = std::max(a.viscosity, b.viscosity);
+      });
+  s.sleep.asleep = stock.count;
+  s.sleep.taken_energy += stock.energy;
+  s.sleep.viscosity = stock.viscosity;
+}
+
+/// Sorts all, those outside the marked cells into the block asleep.
+template <int Dim, class Real> void sort_in_blocks(State<Dim, Real>& s, const std::vector<Block>& block_of) {
+  const auto scope = s.timer.scope("sort and list");
+  s.neighbours.rebuild(s.particles, block_of);
+  take_stock(s, s.neighbours.first_slot(Block::active));
+  mark_near_wall(s);
+  prepare(s);
+  mark_sleepers(s);
+}
+
+/// Is a particle of the marked cells asleep?
+bool any_asleep(const Marks& marks, const Marks& asleep) {
+  for (std::size_t c = 0; c < asleep.size(); ++c)
+    if (marks[c] && asleep[c]) return true;
+  return false;
+}
+
+}  // namespace
+
+template <int Dim, class Real> void mark_sleepers(State<Dim, Real>& s) {
+  const Particles<Dim, Real>& p = s.particles;
+  s.sleep.cells = RestCells<Dim, Real>(s).of_slots(0, s.neighbours.first_slot(Block::active),
+                                                   [&](std::size_t slot) { return !p.is_padding(slot); });
+}
+
+template <int Dim, class Real> void wake_and_rest(State<Dim, Real>& s) {
+  Sleep& sleep = s.sleep;
+  const Particles<Dim, Real>& p = s.particles;
+  // A disturbance that was not at a cell at the last look has since crossed half of it at most.
+  if (sleep.travel < s.parameters.support_radius / 2) return;
+  const auto scope = s.timer.scope("wake and rest");
+  sleep.travel = 0;
+  const std::size_t first = s.neighbours.first_slot(Block::active);
+  const RestCells<Dim, Real> cells(s);
+  const auto rest = p[rest_time][0];
+  const auto after = static_cast<Real>(s.parameters.rest->after);
+  const Marks needed = cells.widened(
+      cells.of_slots(first, p.slots(), [&](std::size_t slot) { return !p.is_padding(slot) && rest[slot] < after; }));
+  const Marks kept = cells.widened(needed);
+  const std::int64_t idle = reduce_slots(
+      p.slots() - first, std::int64_t{0},
+      [&](std::size_t k, std::int64_t& n) { n += !p.is_padding(first + k) && !kept[cells.of(first + k)]; },
+      [](std::int64_t& a, std::int64_t b) { a += b; });
+  sleep.waste += static_cast<double>(idle * (s.clock.step - sleep.looked));
+  sleep.looked = s.clock.step;
+  if (sleep.waste < static_cast<double>(p.count()) && !any_asleep(needed, sleep.cells)) return;
+  std::vector<Block> block_of(p.slots(), Block::asleep);
+  for_each_slot(p.slots(), [&](std::size_t slot) {
+    if (!p.is_padding(slot) && kept[cells.of(slot)]) block_of[slot] = Block::active;
+  });
+  sort_in_blocks(s, block_of);
+  sleep.waste = 0;
+}
+
+template <int Dim, class Real> void sort_active(State<Dim, Real>& s) {
+  const bool in_blocks = s.sleep.asleep > 0;
+  if (in_blocks && s.neighbours.covers_active(s.particles)) {
+    const auto scope = s.timer.scope("sort and list");
+    s.neighbours.rebuild_active(s.particles);
+    mark_near_wall(s);
+    prepare(s, s.neighbours.first_slot(Block::active));
+    return;
+  }
+  std::vector<Block> block_of(s.particles.slots(), Block::active);
+  if (in_blocks) std::fill_n(block_of.begin(), s.neighbours.first_slot(Block::active), Block::asleep);
+  sort_in_blocks(s, block_of);
+}
+
+#define MOLTEN_INSTANTIATE(Dim, Real)             \
+  template void wake_and_rest(State<Dim, Real>&); \
+  template void sort_active(State<Dim, Real>&);   \
+  template void mark_sleepers(State<Dim, Real>&);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
+
+}  // namespace molten

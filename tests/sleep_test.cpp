@@ -1,0 +1,288 @@
+// Sleep: who falls asleep and who wakes, that it takes no more than it states, repeats and survives a restart.
+#include "core/sleep.h"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cstring>
+#include <map>
+
+#include "core/diagnostics.h"
+#include "core/error.h"
+#include "tests/clouds.h"
+
+namespace molten {
+namespace {
+
+using namespace particle_sets;
+
+constexpr double spacing = 0.02;
+
+/// A long slab at rest, on springs of its own pressure alone, and a small block that flies at its left end.
+Start slab_and_drop(const Scene& scene, double speed) {
+  const bool flat = scene.dimensions == 2;
+  Points points = lattice(flat ? std::vector{100, 10} : std::vector{44, 5, 5}, spacing);
+  const std::size_t resting = points.size();
+  for (auto p : lattice(flat ? std::vector{6, 6} : std::vector{4, 4, 4}, spacing)) {
+    p[0] -= (flat ? 9 : 7) * spacing;
+    points.push_back(p);
+  }
+  Start start = start_of(scene, points, spacing);
+  for (std::size_t k = resting; k < points.size(); ++k) start.velocity[k] = {speed, 0, 0};
+  return start;
+}
+
+Scene sleepy_scene(int dim) {
+  Scene scene = plain_scene(dim);
+  scene.numerics.artificial_viscosity = 0.5;
+  scene.numerics.sleep.emplace();
+  scene.numerics.sleep->speed = 0.01;
+  scene.numerics.sleep->after = 0.005;
+  return scene;
+}
+
+Scene hot_sleepy_scene(int dim) {
+  Scene scene = sleepy_scene(dim);
+  scene.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 15}, 60, 20};
+  scene.fluid.heat = Heat{1e-4, std::nullopt, 20, 90};
+  scene.numerics.integrator = IntegratorKind::symplectic_euler;
+  return scene;
+}
+
+/// A column's value of every particle, by id.
+template <class F, int Dim, class Real>
+std::map<std::int64_t, double> by_id(const State<Dim, Real>& s, F field, int k) {
+  std::map<std::int64_t, double> values;
+  for (std::size_t slot = 0; slot < s.particles.slots(); ++slot)
+    if (!s.particles.is_padding(slot)) values[s.particles[id][0][slot]] = s.particles[field][k][slot];
+  return values;
+}
+
+template <int Dim, class Real> void run_until(State<Dim, Real>& s, double time) {
+  while (s.clock.time < time) step(s);
+}
+
+template <class F> class SleepOf : public testing::Test {};
+TYPED_TEST_SUITE(SleepOf, Flavours, FlavourNames);
+#define MOLTEN_FLAVOUR                \
+  constexpr int Dim = TypeParam::dim; \
+  using Real = typename TypeParam::Real
+
+TYPED_TEST(SleepOf, WhatRestsFallsAsleepWhereItIs) {
+  MOLTEN_FLAVOUR;
+  const Scene scene = sleepy_scene(Dim);
+  auto s = state_of<Dim, Real>(scene, slab_and_drop(scene, 0.1));
+  const auto before = by_id(s, position, 0);
+  EXPECT_EQ(s.sleep.asleep, 0);
+  run_until(s, 0.03);
+  const auto n = static_cast<std::int64_t>(s.particles.count());
+  EXPECT_EQ(n, static_cast<std::int64_t>(before.size()));
+  EXPECT_GT(s.sleep.asleep, n / 2);
+  EXPECT_LT(s.sleep.asleep, n - 36) << "the drop flies";
+  EXPECT_EQ(diagnose(s).asleep, s.sleep.asleep);
+  const std::size_t end = s.neighbours.first_slot(Block::active);
+  ASSERT_GT(end, 0u);
+  std::int64_t asleep = 0;
+  for (std::size_t slot = 0; slot < end; ++slot) {
+    if (s.particles.is_padding(slot)) continue;
+    ++asleep;
+    EXPECT_EQ(s.particles[position][0][slot], before.at(s.particles[id][0][slot]));
+    for (int d = 0; d < Dim; ++d) EXPECT_EQ(s.particles[velocity][d][slot], 0);
+  }
+  EXPECT_EQ(asleep, s.sleep.asleep);
+  EXPECT_LE(s.sleep.taken_energy, asleep * s.parameters.particle_mass * 0.01 * 0.01 / 2);
+}
+
+TYPED_TEST(SleepOf, TheReachOfAListAroundWhatMovesIsAwake) {
+  MOLTEN_FLAVOUR;
+  const Scene scene = sleepy_scene(Dim);
+  auto s = state_of<Dim, Real>(scene, slab_and_drop(scene, 1.5));
+  const double reach = s.parameters.support_radius + s.parameters.skin;
+  double nearest = 1e300;
+  while (s.clock.time < 0.1) {
+    for (int k = 0; k < 7; ++k) step(s);
+    s.sleep.travel = 1;  // m; it is time for a look
+    wake_and_rest(s);
+    const std::size_t end = s.neighbours.first_slot(Block::active);
+    for_each_particle(s.particles, [&](std::size_t i, const auto& xi) {
+      if (i < end || s.particles[rest_time][0][i] >= static_cast<Real>(s.parameters.rest->after)) return;
+      for_each_particle(s.particles, [&](std::size_t j, const auto& xj) {
+        if (j < end) nearest = std::min(nearest, std::hypot(xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]));
+      });
+    });
+  }
+  EXPECT_GT(nearest, reach);
+  EXPECT_LT(nearest, 4 * reach) << "no more than that is awake around it";
+}
+
+TYPED_TEST(SleepOf, TakesTheEnergyOfWhatFallsAsleepAndNoMore) {
+  MOLTEN_FLAVOUR;
+  const Scene scene = sleepy_scene(Dim);
+  Start start = slab_and_drop(scene, 0.008);
+  for (auto& v : start.velocity) v = {0.008, 0, 0};
+  auto s = state_of<Dim, Real>(scene, start);
+  run_until(s, 0.01);
+  const auto n = static_cast<double>(s.particles.count());
+  EXPECT_EQ(s.sleep.asleep, n) << "slower than the bound is at rest";
+  EXPECT_EQ(diagnose(s).kinetic_energy, 0);
+  const double bound = n * s.parameters.particle_mass * 0.01 * 0.01 / 2;
+  EXPECT_LE(s.sleep.taken_energy, bound);
+  EXPECT_NEAR(s.sleep.taken_energy, n * s.parameters.particle_mass * 0.008 * 0.008 / 2, 0.02 * bound);
+  const auto before = by_id(s, position, 0);
+  run_until(s, 0.02);
+  EXPECT_EQ(before, by_id(s, position, 0));
+}
+
+/// The slab's right end has felt nothing, its left end has been hit.
+TYPED_TEST(SleepOf, ADropWakesWhatItHits) {
+  MOLTEN_FLAVOUR;
+  Scene scene = sleepy_scene(Dim);
+  const Start start = slab_and_drop(scene, 1.0);
+  auto s = state_of<Dim, Real>(scene, start);
+  scene.numerics.sleep.reset();
+  auto twin = state_of<Dim, Real>(scene, start);
+  std::int64_t most = 0;
+  while (s.clock.time < 0.12) {
+    step(s);
+    most = std::max(most, s.sleep.asleep);
+  }
+  run_until(twin, s.clock.time);
+  const auto n = static_cast<double>(s.particles.count());
+  EXPECT_GT(most, 0.5 * n);
+  EXPECT_LT(s.sleep.asleep, most) << "woken";
+  // All the slab's left end moves as without sleep; all in all no particle is denied more than m v of momentum.
+  const auto x = by_id(s, position, 0), same = by_id(twin, position, 0);
+  double furthest = 0;
+  for (const auto& [number, where] : x) furthest = std::max(furthest, std::abs(where - same.at(number)));
+  EXPECT_LT(furthest, 0.01 * (s.clock.time + 1e-3) + 0.05 * spacing);
+  const double momentum = diagnose(s).momentum[0], whole = diagnose(twin).momentum[0];
+  EXPECT_LT(std::abs(momentum - whole), n * s.parameters.particle_mass * 0.01);
+  EXPECT_GT(std::abs(whole), n * s.parameters.particle_mass * 0.01) << "or the bound says nothing";
+}
+
+/// Keeps what is archived in memory.
+class MemoryArchive : public Archive {
+ public:
+  bool loading() const override { return loads; }
+  void value(std::string_view name, double& v) override { array(name, NumberType::f64, &v, 1); }
+  void value(std::string_view name, std::int64_t& v) override { array(name, NumberType::i64, &v, 1); }
+  void array(std::string_view name, NumberType type, void* data, std::size_t count) override {
+    static const std::map<NumberType, std::size_t> sizes{
+        {NumberType::f32, 4}, {NumberType::i32, 4}, {NumberType::u32, 4}, {NumberType::i8, 1}, {NumberType::u8, 1}};
+    const std::size_t bytes = count * (sizes.contains(type) ? sizes.at(type) : 8);
+    auto& kept = arrays[std::string(name)];
+    if (!loads) {
+      kept.resize(bytes), counts[std::string(name)] = count;
+      if (bytes > 0) std::memcpy(kept.data(), data, bytes);
+    } else if (bytes > 0) {
+      ASSERT_EQ(kept.size(), bytes) << name;
+      std::memcpy(data, kept.data(), bytes);
+    }
+  }
+  std::size_t stored_count(std::string_view name) const override { return counts.at(std::string(name)); }
+
+  bool loads = false;
+  std::map<std::string, std::vector<unsigned char>> arrays;
+  std::map<std::string, std::size_t> counts;
+};
+
+template <int Dim, class Real> auto archived(State<Dim, Real>& s) {
+  MemoryArchive a;
+  s.archive(a);
+  return a;
+}
+
+template <int Dim, class Real> auto archived_after(const Scene& scene, const Start& start, int threads, int steps) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(threads);
+  auto s = state_of<Dim, Real>(scene, start);
+  for (int k = 0; k < steps; ++k) step(s);
+  omp_set_num_threads(before);
+  EXPECT_GT(s.sleep.asleep, 0);
+  return archived(s).arrays;
+}
+
+TYPED_TEST(SleepOf, GivesTheSameBitsForAnyNumberOfThreads) {
+  MOLTEN_FLAVOUR;
+  for (const Scene& scene : {sleepy_scene(Dim), hot_sleepy_scene(Dim)}) {
+    const Start start = slab_and_drop(scene, 1.0);
+    EXPECT_EQ((archived_after<Dim, Real>(scene, start, 1, 120)), (archived_after<Dim, Real>(scene, start, 3, 120)));
+  }
+}
+
+TYPED_TEST(SleepOf, SurvivesARestartBitForBit) {
+  MOLTEN_FLAVOUR;
+  for (const Scene& scene : {sleepy_scene(Dim), hot_sleepy_scene(Dim)}) {
+    const Start start = slab_and_drop(scene, 1.0);
+    auto whole = state_of<Dim, Real>(scene, start);
+    bool slept = false;
+    for (int piece = 0; piece < 20; ++piece) {
+      auto other = state_of<Dim, Real>(scene, start);
+      MemoryArchive saved = archived(whole);
+      saved.loads = true;
+      other.archive(saved);
+      for (int k = 0; k < 8; ++k) step(whole), step(other);
+      ASSERT_EQ(archived(whole).arrays, archived(other).arrays) << "from step " << 8 * piece;
+      slept |= whole.sleep.asleep > 0;
+    }
+    EXPECT_TRUE(slept);
+  }
+}
+
+// ---- order and list in blocks ---------------------------------------------------------------------------------------
+
+template <int Dim, class Real> std::vector<Block> left_of(const Particles<Dim, Real>& p, double x) {
+  std::vector<Block> blocks(p.slots(), Block::active);
+  for_each_particle(p, [&](std::size_t slot, const auto& at) {
+    if (at[0] < x) blocks[slot] = Block::asleep;
+  });
+  return blocks;
+}
+
+/// Every pair within the support of which the first is active is listed once, none of which it is asleep.
+template <int Dim, class Real> void expect_lists_of_active(const clouds::Cloud<Dim, Real>& c) {
+  const std::size_t first = c.neighbours.first_slot(Block::active);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> listed;
+  clouds::for_each_listed(c, [&](std::uint32_t i, std::uint32_t j, const auto&) {
+    EXPECT_GE(i, first);
+    ++listed[{i, j}];
+  });
+  std::size_t across = 0;
+  for (const auto& pair : naive_pairs(c.particles, c.domain.periodic, c.settings.support_radius)) {
+    if (pair.first < first) continue;
+    across += pair.second < first;
+    EXPECT_EQ(listed[pair], 1) << pair.first << " with " << pair.second;
+  }
+  EXPECT_GT(across, 0u);
+}
+
+TYPED_TEST(SleepOf, ActiveParticlesFindNeighboursInAllBlocks) {
+  MOLTEN_FLAVOUR;
+  const int cells = Dim == 2 ? 24 : 9;
+  clouds::Cloud<Dim, Real> c(cube<Dim>(cells, 0.1, 0.3), 0.1,
+                             clouds::domain_between<Dim>(0, cells * 0.1, {false, true, false}));
+  c.neighbours.rebuild(c.particles, left_of(c.particles, 0.05 * cells));
+  expect_lists_of_active(c);
+  const std::size_t end = c.neighbours.first_slot(Block::active), count = c.particles.count();
+  const std::vector<std::int64_t> ids(c.particles[id][0], c.particles[id][0] + end);
+  const std::vector<Real> local(c.particles[local_position][0], c.particles[local_position][0] + end);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> move(-0.08, 0.08);
+  for (int again = 0; again < 3; ++again) {
+    const auto x = c.particles[position];
+    for (std::size_t slot = end; slot < c.particles.slots(); ++slot)
+      for (int d = 0; d < Dim; ++d) x[d][slot] = std::clamp(x[d][slot] + move(random), 0.0, 0.0999 * cells);
+    ASSERT_TRUE(c.neighbours.covers_active(c.particles));
+    c.neighbours.rebuild_active(c.particles);
+    EXPECT_EQ(c.neighbours.first_slot(Block::active), end);
+    EXPECT_EQ(c.particles.count(), count);
+    EXPECT_EQ(ids, (std::vector<std::int64_t>(c.particles[id][0], c.particles[id][0] + end)));
+    EXPECT_EQ(local, (std::vector<Real>(c.particles[local_position][0], c.particles[local_position][0] + end)));
+    expect_lists_of_active(c);
+  }
+  c.particles[position][0][c.particles.slots() - cluster_size] = 100;
+  EXPECT_FALSE(c.neighbours.covers_active(c.particles));
+}
+
+}  // namespace
+}  // namespace molten
