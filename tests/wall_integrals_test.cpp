@@ -118,7 +118,7 @@ TEST(WallIntegrals, OverARidge) {
 }
 
 TEST(WallIntegrals, InsideABox) {
-  for (const Point<3> x :
+  for (const Point<3>& x :
        {Point<3>(5, 5, 0.52), Point<3>(0.52, 0.6, 0.72), Point<3>(1.32, 5, 0.4), Point<3>(8, 9, 9.48)})
     expect_as_brute<3>({box_container()}, x, outside_cube);
 }
