@@ -1,6 +1,7 @@
 #include "core/boundary/wall_integrals.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t table_size = 2048;  // linear interpolation is then good to 1e-6
 constexpr double same_direction = 1e-9;   // sine of the angle up to which facets that share an edge lie in one plane
+constexpr double small_facet = 0.3;       // radius over distance, up to which three points do
 constexpr double plane_size = 1e6;        // half of it, in support radii: what stands for infinite
 
 /// Gauss-Legendre quadrature on [−1, 1].
@@ -68,32 +70,31 @@ RadialIntegrals::RadialIntegrals(KernelKind kind, int dim, double smoothing_leng
   });
   // From the support inwards; W is linear between the entries, which makes the sums exact to second order.
   weight_beyond_.assign(n + 1, 0);
-  Table volume(n + 1, 0);  // ∫_r^R W s² ds
+  volume_beyond_.assign(n + 1, 0);  // ∫_r^R W s² ds
   const auto integral = [&](std::size_t k, auto&& f) { return coarse(k * step, (k + 1) * step, f); };
   for (std::size_t k = n; k-- > 0;) {
     weight_beyond_[k] = weight_beyond_[k + 1] + integral(k, [&](double s) { return at(kernel_, s) * s; });
-    volume[k] = volume[k + 1] + integral(k, [&](double s) { return at(kernel_, s) * s * s; });
+    volume_beyond_[k] = volume_beyond_[k + 1] + integral(k, [&](double s) { return at(kernel_, s) * s * s; });
   }
   plane_weight_.assign(n + 1, 0);
   plane_hidden_.assign(n + 1, 0);
   if (dim == 2)
     fill_planes_2d();
   else
-    fill_planes_3d(volume);
+    fill_planes_3d();
 }
 
-/// `volume`: ∫_r^R W s² ds
-void RadialIntegrals::fill_planes_3d(const Table& volume) {
+void RadialIntegrals::fill_planes_3d() {
   const std::size_t n = table_size;
   const double step = reach_ / n;
   Table beyond(n + 1, 0);  // ∫_r^R H s ds; H s = s^−2 ∫_s^R W
   hidden_beyond_.assign(n + 1, 0);
   for (std::size_t k = n; k-- > 1;) {
-    const auto slope = [&](double s) { return at(volume, s) / (s * s); };
+    const auto slope = [&](double s) { return at(volume_beyond_, s) / (s * s); };
     beyond[k] = beyond[k + 1] + coarse(k * step, (k + 1) * step, slope);
     hidden_beyond_[k] = k * step * beyond[k];
   }
-  hidden_beyond_[0] = volume[0];  // the limit
+  hidden_beyond_[0] = volume_beyond_[0];  // the limit
   for (std::size_t k = 0; k < n; ++k) {
     plane_weight_[k] = 2 * std::numbers::pi * weight_beyond_[k];
     plane_hidden_[k] = 2 * std::numbers::pi * hidden_beyond_[k];
@@ -198,7 +199,7 @@ template <int Dim>
 void WallIntegrals<Dim>::add_sheet(const std::vector<Point<Dim>>& corners, const std::vector<bool>& inner,
                                    std::int32_t plane) {
   const Point<Dim>& n = planes_[plane].normal;
-  Sheet sheet{n, Point<Dim>::Zero(), 0, static_cast<std::uint32_t>(edges_.size()), 0, plane};
+  Sheet sheet{n, Point<Dim>::Zero(), 0, static_cast<std::uint32_t>(edges_.size()), 0, plane, 0};
   for (const auto& c : corners) sheet.centre += c / static_cast<double>(corners.size());
   for (const auto& c : corners) sheet.radius = std::max(sheet.radius, (c - sheet.centre).norm());
   const std::size_t edges = Dim == 3 ? corners.size() : 1;
@@ -209,14 +210,32 @@ void WallIntegrals<Dim>::add_sheet(const std::vector<Point<Dim>>& corners, const
     if (edge.length > 0) edges_.push_back(edge);
   }
   sheet.edges_end = static_cast<std::uint32_t>(edges_.size());
+  if constexpr (Dim == 3)
+    if (sheet.edges_end - sheet.edges_begin == 3 && std::count(inner.begin(), inner.end(), true) == 0)
+      sheet.area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
   sheets_.push_back(sheet);
+}
+
+/// A triangle that is small for its distance: the three-point rule of second degree.
+template <int Dim>
+void WallIntegrals<Dim>::add_small(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const {
+  for (std::uint32_t k = sheet.edges_begin; k < sheet.edges_end; ++k) {
+    const Point<Dim> y = (sheet.centre + edges_[k].start) / 2 - x;
+    const double r = y.norm(), weight = sheet.area / 3 * radial_.kernel(r);
+    sum.weight += weight;
+    sum.moment += weight * (y + d * sheet.normal);
+    sum.hidden += sheet.area / 3 * d * radial_.hidden_per_height(r);
+  }
 }
 
 template <int Dim> void WallIntegrals<Dim>::add(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const {
   const double least = 1e-6 * reach(), height = std::abs(d) < least ? std::copysign(least, d) : d;
   const double radius2 = reach() * reach() - height * height;  // of the disc that the support cuts out of the plane
   const double far = sheet.radius + reach();
-  if ((sheet.centre - x).squaredNorm() > far * far) return;
+  const double distance2 = (sheet.centre - x).squaredNorm();
+  if (distance2 > far * far) return;
+  if (sheet.area > 0 && sheet.radius * sheet.radius < small_facet * small_facet * distance2)
+    return add_small(sum, sheet, x, d);
   const Point<Dim> foot = x - d * sheet.normal;
   const auto at_foot = std::abs(height);
   if constexpr (Dim == 2) {

@@ -41,6 +41,8 @@ class RadialIntegrals {
   double weight_beyond(double r) const { return at(weight_beyond_, r); }
   double hidden_beyond(double r) const { return at(hidden_beyond_, r); }
   double kernel(double r) const { return at(kernel_, r); }
+  /// H(r) in 3-D, 1/m³
+  double hidden_per_height(double r) const { return at(volume_beyond_, r) / (r * r * r); }
   double reach() const { return reach_; }  // support radius, m
 
  private:
@@ -52,10 +54,10 @@ class RadialIntegrals {
     return table[k] + (s - static_cast<double>(k)) * (table[k + 1] - table[k]);
   }
   void fill_planes_2d();
-  void fill_planes_3d(const Table& volume);
+  void fill_planes_3d();
 
   double reach_ = 0, per_entry_ = 0;  // m, 1/m
-  Table kernel_, weight_beyond_, hidden_beyond_, plane_weight_, plane_hidden_;
+  Table kernel_, weight_beyond_, volume_beyond_, hidden_beyond_, plane_weight_, plane_hidden_;
 };
 
 template <int Dim> class WallIntegrals {
@@ -95,6 +97,7 @@ template <int Dim> class WallIntegrals {
     double radius;  // m, of a sphere about the centre that holds it
     std::uint32_t edges_begin, edges_end;
     std::int32_t plane;
+    double area;  // m²; 0: not a triangle that shares no plane with a neighbour
   };
   struct Plane {
     Point<Dim> normal;
@@ -109,6 +112,7 @@ template <int Dim> class WallIntegrals {
   void add_facets(const WallSurface<Dim>& surface);
   void add_planes(const std::vector<Wall<Dim>>& walls);
   void add_sheet(const std::vector<Point<Dim>>& corners, const std::vector<bool>& inner, std::int32_t plane);
+  void add_small(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const;
   void add(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const;
   double distance(const Sheet& sheet, const Point<Dim>& x, bool outer_edges_alone) const;
   template <class Visit> void for_each_sheet(const Point<Dim>& x, Visit&& visit) const;
