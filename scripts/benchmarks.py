@@ -20,7 +20,8 @@ def fail(message):
 
 def build_here():
     """Builds the working tree; its folder of benchmark programs."""
-    subprocess.run([ROOT / "scripts/build", "-DMOLTEN_BENCH=ON"], check=True, stdout=sys.stderr)
+    subprocess.run([ROOT / "scripts/build", "-DMOLTEN_BENCH=ON"], check=True, stdout=sys.stderr,
+                   env=dict(os.environ, MOLTEN_TARGET="benchmarks"))
     return ROOT / "build/release/bench"
 
 
@@ -40,6 +41,9 @@ def build_revision(revision):
     source = ROOT / "build/compare" / found[:12]
     if not source.exists():
         git("worktree", "add", "--detach", "--quiet", str(source), found)
+    models = source / "scenes/models"
+    if not models.exists() and (ROOT / "scenes/models").exists():  # else its bunny is a ball
+        models.symlink_to(ROOT / "scenes/models")
     print(f"building {revision} ({found[:12]}) in {source}", file=sys.stderr)
     subprocess.run([source / "scripts/build", "-DMOLTEN_BENCH=ON", "-DMOLTEN_TESTS=OFF"], check=True, stdout=sys.stderr)
     return source / "build/release/bench"
