@@ -86,7 +86,7 @@ template <int Dim, class T> struct SymTensor {
     unrolled<size>([&](auto k) { c[k] += b[k]; });
     return *this;
   }
-  friend Vec<Dim, T> operator*(const SymTensor& s, const Vec<Dim, T>& x) {
+  [[gnu::always_inline]] friend Vec<Dim, T> operator*(const SymTensor& s, const Vec<Dim, T>& x) {
     Vec<Dim, T> r;
     unrolled<Dim>([&](auto a) {
       r[a] = s(a, 0) * x[0];
@@ -97,7 +97,8 @@ template <int Dim, class T> struct SymTensor {
 };
 
 /// a bᵀ + b aᵀ
-template <int Dim, class T> SymTensor<Dim, T> twice_symmetric(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
+template <int Dim, class T>
+[[gnu::always_inline]] inline SymTensor<Dim, T> twice_symmetric(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
   SymTensor<Dim, T> r;
   unrolled<Dim>([&](auto i) {
     unrolled<Dim>([&](auto j) {
