@@ -25,7 +25,8 @@ template <int Dim, class Real> void minimal_integrate(State<Dim, Real>& s) {
   const double dt = s.clock.dt, previous_dt = s.clock.previous_dt, kick = (previous_dt + dt) / 2;
   const double stretch = previous_dt > 0 ? dt / previous_dt : 0;
   const auto x = p[position];
-  const auto v = p[velocity], half_v = p[half_velocity];
+  const auto v = p[velocity];
+  const auto half_v = p[half_velocity];
   const auto a = p[acceleration];
   Real *half_c = p[half_compression][0], *previous = p[previous_compression_rate][0], *c = p[compression][0];
   const auto advance = [&](std::size_t slot, double& largest) {
