@@ -54,10 +54,8 @@ template <int Dim, class Real> std::vector<Naive<Dim>> naive_sums(const State<Di
 template <class F> class CorrectionsOf : public testing::Test {};
 TYPED_TEST_SUITE(CorrectionsOf, Flavours, FlavourNames);
 
-#define MOLTEN_FLAVOUR                   \
-  constexpr int Dim = TypeParam::dim;    \
-  using Real = typename TypeParam::Real; \
-  const double digits [[maybe_unused]] = std::is_same_v<Real, float> ? 2e-5 : 1e-10
+/// Round-off of such sums.
+template <class Real> constexpr double digits = sizeof(Real) == 4 ? 2e-5 : 1e-10;
 
 TYPED_TEST(CorrectionsOf, InvertTheMoment) {
   MOLTEN_FLAVOUR;
@@ -71,7 +69,7 @@ TYPED_TEST(CorrectionsOf, InvertTheMoment) {
     const double left = (L * naive[k].moment - L.Identity()).norm();
     const double least = Eigen::SelfAdjointEigenSolver<decltype(L)>().computeDirect(naive[k].moment).eigenvalues()[0];
     if (least > 0.251) {
-      EXPECT_LT(left, 20 * digits);
+      EXPECT_LT(left, 20 * digits<Real>);
       ++inverted;
     } else if (least < 0.249) {
       EXPECT_TRUE(L.isIdentity());
@@ -96,7 +94,7 @@ TYPED_TEST(CorrectionsOf, ShiftTowardsWhereParticlesAreFewButNotAtTheSurface) {
     const double factor = -3 * fastest * s.parameters.smoothing_length * inner;
     const double less = std::min(1.0, fastest / 2 / (std::abs(factor) * naive[k].crowding.norm() + 1e-300));
     for (int d = 0; d < Dim; ++d)
-      EXPECT_NEAR(s.particles[shift_velocity][d][k], less * factor * naive[k].crowding[d], 50 * digits);
+      EXPECT_NEAR(s.particles[shift_velocity][d][k], less * factor * naive[k].crowding[d], 50 * digits<Real>);
     if (inner == 1) ++moved;
     if (!well_inside<Dim>(x, (Dim == 2 ? 16 : 9) * spacing, 0.5 * spacing)) {
       ++still;
@@ -117,7 +115,7 @@ TYPED_TEST(CorrectionsOf, MakeTheDivergenceOfLinearFlowsExactEverywhere) {
   int whole = 0;
   for_each_particle(s.particles, [&](std::size_t k, const auto&) {
     if (s.particles[correction].of(k)(0, 1) == 0) return;  // ill-conditioned: a corner
-    EXPECT_NEAR(s.particles[compression_rate][0][k], -5, 300 * digits);
+    EXPECT_NEAR(s.particles[compression_rate][0][k], -5, 300 * digits<Real>);
     ++whole;
   });
   EXPECT_GT(whole, static_cast<int>(s.particles.count()) * 9 / 10);
@@ -139,9 +137,9 @@ TYPED_TEST(CorrectionsOf, CarryLinearFieldsAlongWithTheShift) {
     const auto shift = s.particles[shift_velocity].of(k);
     if (shift[0] == 0) return;
     ++inner;
-    EXPECT_NEAR(s.particles[acceleration][0][k], 2 * shift[1], 100 * digits);
-    EXPECT_NEAR(s.particles[acceleration][1][k], -shift[0], 100 * digits);
-    EXPECT_NEAR(s.particles[compression_rate][0][k], 0.1 * shift[0] - 0.2 * shift[1], 100 * digits);
+    EXPECT_NEAR(s.particles[acceleration][0][k], 2 * shift[1], 100 * digits<Real>);
+    EXPECT_NEAR(s.particles[acceleration][1][k], -shift[0], 100 * digits<Real>);
+    EXPECT_NEAR(s.particles[compression_rate][0][k], 0.1 * shift[0] - 0.2 * shift[1], 100 * digits<Real>);
   });
   EXPECT_GT(inner, 50);
 }
@@ -173,7 +171,7 @@ TYPED_TEST(CorrectionsOf, MakeLaplaciansWholeAndKeepHeat) {
     int inner = 0;
     for_each_particle(s.particles, [&](std::size_t k, const auto& x) {
       if (!well_inside<Dim>(x, (Dim == 2 ? 24 : 14) * spacing, s.parameters.support_radius + 2.5 * spacing)) return;
-      EXPECT_NEAR(s.particles[temperature_rate][0][k], 4, 2000 * digits);  // without: 0.974 and 0.979 of it
+      EXPECT_NEAR(s.particles[temperature_rate][0][k], 4, 2000 * digits<Real>);  // without: 0.974 and 0.979 of it
       ++inner;
     });
     EXPECT_GT(inner, 0);

@@ -51,10 +51,8 @@ template <int Dim, class Real> std::vector<std::array<double, 2>> naive_sums(con
 template <class F> class DensityOf : public testing::Test {};
 TYPED_TEST_SUITE(DensityOf, Flavours, FlavourNames);
 
-#define MOLTEN_FLAVOUR                   \
-  constexpr int Dim = TypeParam::dim;    \
-  using Real = typename TypeParam::Real; \
-  const double digits [[maybe_unused]] = std::is_same_v<Real, float> ? 2e-6 : 1e-11
+/// Round-off of such sums.
+template <class Real> constexpr double digits = sizeof(Real) == 4 ? 2e-6 : 1e-11;
 
 double wavy(const X& x) { return 0.02 * std::sin(9 * x[0]) + 0.01 * x[1]; }
 
@@ -66,8 +64,9 @@ TYPED_TEST(DensityOf, SummationIsTheNaiveSum) {
   const auto naive = naive_sums(s);
   sum_density(s);
   for_each_particle(s.particles, [&](std::size_t k, const auto&) {
-    EXPECT_NEAR(s.particles[compression][0][k], naive[k][0] / 1000 - 1, 10 * digits);
-    EXPECT_NEAR(s.particles[pressure_term][0][k] / s.parameters.eos.term(s.particles[compression][0][k]), 1, digits);
+    EXPECT_NEAR(s.particles[compression][0][k], naive[k][0] / 1000 - 1, 10 * digits<Real>);
+    EXPECT_NEAR(s.particles[pressure_term][0][k] / s.parameters.eos.term(s.particles[compression][0][k]), 1,
+                digits<Real>);
   });
 }
 
@@ -98,7 +97,7 @@ TYPED_TEST(DensityOf, ShepardIsTheNaiveMean) {
   const auto naive = naive_sums(s);
   filter_density(s);
   for_each_particle(s.particles, [&](std::size_t k, const auto&) {
-    EXPECT_NEAR(s.particles[compression][0][k], naive[k][0] / naive[k][1] - 1, 10 * digits);
+    EXPECT_NEAR(s.particles[compression][0][k], naive[k][0] / naive[k][1] - 1, 10 * digits<Real>);
   });
 }
 
@@ -108,7 +107,7 @@ TYPED_TEST(DensityOf, FiltersLeaveAnEvenDensityAndMlsALinearOne) {
     auto even = block<Dim, Real>(filtered_scene(Dim, kind), [](const X&) { return 0.03; });
     filter_density(even);
     for_each_particle(even.particles, [&](std::size_t k, const auto&) {
-      EXPECT_NEAR(even.particles[compression][0][k], 0.03, digits);
+      EXPECT_NEAR(even.particles[compression][0][k], 0.03, digits<Real>);
     });
     const auto slope = [](const X& x) { return 0.01 + 0.02 * x[0] - 0.03 * x[1]; };
     auto linear = block<Dim, Real>(filtered_scene(Dim, kind), slope);
@@ -118,7 +117,7 @@ TYPED_TEST(DensityOf, FiltersLeaveAnEvenDensityAndMlsALinearOne) {
       worst = std::max(worst, std::abs(linear.particles[compression][0][k] - slope(x)));
     });
     if (kind == DensityFilter::Kind::mls) {
-      EXPECT_LT(worst, 2 * digits) << "up to the edges of a disordered block";
+      EXPECT_LT(worst, 2 * digits<Real>) << "up to the edges of a disordered block";
     } else {
       EXPECT_GT(worst, 1e-4) << "Shepard flattens the density at edges";
     }
@@ -151,7 +150,7 @@ TYPED_TEST(DensityOf, LonelyParticlesKeepTheirDensity) {
                       [&](std::size_t k, const auto&) { s.particles[compression][0][k] = Real(0.01 * k); });
     filter_density(s);
     for_each_particle(s.particles, [&](std::size_t k, const auto&) {
-      EXPECT_NEAR(s.particles[compression][0][k], 0.01 * k, digits);
+      EXPECT_NEAR(s.particles[compression][0][k], 0.01 * k, digits<Real>);
     });
   }
 }

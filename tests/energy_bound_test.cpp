@@ -62,10 +62,6 @@ template <int Dim, class Real> State<Dim, Real> pressed(const Scene& scene, doub
 template <class F> class EnergyBoundOf : public testing::Test {};
 TYPED_TEST_SUITE(EnergyBoundOf, Flavours, FlavourNames);
 
-#define MOLTEN_FLAVOUR                \
-  constexpr int Dim = TypeParam::dim; \
-  using Real = typename TypeParam::Real
-
 /// α particle by particle in the order of the slots, the surplus handed on as it is left.
 template <int Dim, class Real>
 std::vector<double> shares_in_sequence(const State<Dim, Real>& s, double dt, bool hand_on) {

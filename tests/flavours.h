@@ -20,4 +20,9 @@ struct FlavourNames {
   }
 };
 
+/// First line of a test over them: what its body calls the two.
+#define MOLTEN_FLAVOUR                \
+  constexpr int Dim = TypeParam::dim; \
+  using Real [[maybe_unused]] = typename TypeParam::Real
+
 }  // namespace molten

@@ -100,14 +100,9 @@ template <int Dim, class Real> void expect_good(const Cloud<Dim, Real>& c) {
 template <class F> class NeighboursOf : public testing::Test {};
 TYPED_TEST_SUITE(NeighboursOf, Flavours, FlavourNames);
 
-#define MOLTEN_FLAVOUR                   \
-  constexpr int Dim = TypeParam::dim;    \
-  using Real = typename TypeParam::Real; \
-  using AnyCloud [[maybe_unused]] = Cloud<Dim, Real>
-
 TYPED_TEST(NeighboursOf, Lattice) {
   MOLTEN_FLAVOUR;
-  const AnyCloud c(cube<Dim>(Dim == 2 ? 25 : 10, 0.1), 0.1, domain_between<Dim>(-10, 10));
+  const Cloud<Dim, Real> c(cube<Dim>(Dim == 2 ? 25 : 10, 0.1), 0.1, domain_between<Dim>(-10, 10));
   expect_good(c);
   EXPECT_EQ(naive_pairs(c.particles, c.domain.periodic, c.settings.support_radius).size(),
             brute_pairs(c, c.settings.support_radius).size());
@@ -119,7 +114,7 @@ TYPED_TEST(NeighboursOf, RandomAndCoincident) {
   Points points = random_points<Dim>(static_cast<int>(std::pow(cells, Dim)), 0, 0.1 * cells);
   points[1] = points[0];
   points[3][0] = points[2][0];
-  expect_good(AnyCloud(points, 0.1, domain_between<Dim>(-10, 10)));
+  expect_good(Cloud<Dim, Real>(points, 0.1, domain_between<Dim>(-10, 10)));
 }
 
 TYPED_TEST(NeighboursOf, EachAxisPeriodic) {
@@ -128,7 +123,7 @@ TYPED_TEST(NeighboursOf, EachAxisPeriodic) {
   for (int axes = 1; axes < 1 << Dim; ++axes) {
     SCOPED_TRACE(axes);
     const auto domain = domain_between<Dim>(0, cells * 0.1, {bool(axes & 1), bool(axes & 2), bool(axes & 4)});
-    expect_good(AnyCloud(cube<Dim>(cells, 0.1, 0.4), 0.1, domain));
+    expect_good(Cloud<Dim, Real>(cube<Dim>(cells, 0.1, 0.4), 0.1, domain));
   }
 }
 
@@ -140,7 +135,7 @@ TYPED_TEST(NeighboursOf, ShortPeriods) {
     SCOPED_TRACE(period);
     const int count = static_cast<int>(std::pow(period, Dim));
     const auto domain = domain_between<Dim>(-0.3, 0.1 * period - 0.3, {true, true, true});
-    expect_good(AnyCloud(random_points<Dim>(count, -0.3, 0.1 * period - 0.3), 0.1, domain));
+    expect_good(Cloud<Dim, Real>(random_points<Dim>(count, -0.3, 0.1 * period - 0.3), 0.1, domain));
   }
 }
 
@@ -150,18 +145,18 @@ TYPED_TEST(NeighboursOf, SparseWithFarOutliers) {
   const Points sparse = random_points<Dim>(300, -3, 5), far = random_points<Dim>(40, -80, 80);
   points.insert(points.end(), sparse.begin(), sparse.end());
   points.insert(points.end(), far.begin(), far.end());
-  const AnyCloud c(points, 0.1, domain_between<Dim>(-100, 100));
+  const Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(-100, 100));
   expect_good(c);
   EXPECT_LT(c.neighbours.grid().columns(), 65536 + 8 * points.size() + 1) << "the table stays small";
 }
 
 TYPED_TEST(NeighboursOf, OneAndNone) {
   MOLTEN_FLAVOUR;
-  const AnyCloud one(Points{{0.2, 0.3, 0.4}}, 0.1, domain_between<Dim>(-1, 1));
+  const Cloud<Dim, Real> one(Points{{0.2, 0.3, 0.4}}, 0.1, domain_between<Dim>(-1, 1));
   EXPECT_EQ(one.particles.count(), 1u);
   EXPECT_EQ(one.particles.slots(), std::size_t{cluster_size});
   expect_complete(one, 0.28);
-  const AnyCloud none(Points{}, 0.1, domain_between<Dim>(-1, 1));
+  const Cloud<Dim, Real> none(Points{}, 0.1, domain_between<Dim>(-1, 1));
   EXPECT_EQ(none.particles.count(), 0u);
   EXPECT_TRUE(none.neighbours.chunks().empty());
 }
@@ -174,7 +169,7 @@ TYPED_TEST(NeighboursOf, FarFromTheOrigin) {
     Points points = cube<Dim>(Dim == 2 ? 16 : 8, 0.001, 0.3);
     for (auto& p : points)
       for (int d = 0; d < Dim; ++d) p[d] += origin;
-    expect_good(AnyCloud(points, 0.001, domain_between<Dim>(origin - 1, origin + 1)));
+    expect_good(Cloud<Dim, Real>(points, 0.001, domain_between<Dim>(origin - 1, origin + 1)));
   }
 }
 
@@ -194,7 +189,7 @@ TYPED_TEST(NeighboursOf, TenKilometresAlongTheColumns) {
   MOLTEN_FLAVOUR;
   for (const double spacing : {0.01, 0.001}) {
     SCOPED_TRACE(spacing);
-    const AnyCloud c(two_heaps<Dim>(spacing, 1e4, Dim - 1), spacing, domain_between<Dim>(-1, 2e4));
+    const Cloud<Dim, Real> c(two_heaps<Dim>(spacing, 1e4, Dim - 1), spacing, domain_between<Dim>(-1, 2e4));
     expect_complete(c, c.settings.support_radius + c.settings.skin);
   }
 }
@@ -203,7 +198,7 @@ TYPED_TEST(NeighboursOf, TenKilometresAcrossTheColumns) {
   // So wide a spread of so few particles widens the columns, and positions in wide columns lose digits in single
   // precision: here up to 1e-3 spacings. The list stays complete.
   MOLTEN_FLAVOUR;
-  const AnyCloud c(two_heaps<Dim>(0.01, 1e4, 0), 0.01, domain_between<Dim>(-1, 2e4));
+  const Cloud<Dim, Real> c(two_heaps<Dim>(0.01, 1e4, 0), 0.01, domain_between<Dim>(-1, 2e4));
   expect_complete(c, c.settings.support_radius + c.settings.skin, std::is_same_v<Real, float> ? 1e-3 : 1e-6);
 }
 
@@ -211,7 +206,7 @@ TYPED_TEST(NeighboursOf, CompleteUntilHalfASkin) {
   MOLTEN_FLAVOUR;
   const int cells = Dim == 2 ? 20 : 8;
   const auto domain = domain_between<Dim>(0, cells * 0.1, {true, false, true});
-  AnyCloud c(cube<Dim>(cells, 0.1, 0.3), 0.1, domain);
+  Cloud<Dim, Real> c(cube<Dim>(cells, 0.1, 0.3), 0.1, domain);
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   const auto x = c.particles[position];
@@ -235,7 +230,7 @@ TYPED_TEST(NeighboursOf, CompleteUntilHalfASkin) {
 
 TYPED_TEST(NeighboursOf, RelistIsTheSameList) {
   MOLTEN_FLAVOUR;
-  AnyCloud c(cube<Dim>(Dim == 2 ? 40 : 12, 0.1, 0.4), 0.1, domain_between<Dim>(-10, 10, {true, false, false}));
+  Cloud<Dim, Real> c(cube<Dim>(Dim == 2 ? 40 : 12, 0.1, 0.4), 0.1, domain_between<Dim>(-10, 10, {true, false, false}));
   const std::vector<ClusterChunk> before(c.neighbours.chunks().begin(), c.neighbours.chunks().end());
   c.neighbours.relist(c.particles);
   ASSERT_EQ(before.size(), c.neighbours.chunks().size());
@@ -253,7 +248,7 @@ TYPED_TEST(NeighboursOf, DropsWhatLeavesTheDomain) {
   points.push_back({5, 0.4, 0.4});
   points.push_back({0.4, -1.001, 0.4});
   points.push_back({NAN, 0.4, 0.4});
-  const AnyCloud c(points, 0.1, domain_between<Dim>(-1, 1));
+  const Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(-1, 1));
   EXPECT_EQ(c.particles.count(), kept);
   EXPECT_EQ(c.neighbours.dropped(), 3u);
   expect_good(c);
@@ -261,7 +256,7 @@ TYPED_TEST(NeighboursOf, DropsWhatLeavesTheDomain) {
 
 TYPED_TEST(NeighboursOf, PaddingIsFarFromEverything) {
   MOLTEN_FLAVOUR;
-  const AnyCloud c(random_points<Dim>(401, 0, 2), 0.1, domain_between<Dim>(-10, 10));
+  const Cloud<Dim, Real> c(random_points<Dim>(401, 0, 2), 0.1, domain_between<Dim>(-10, 10));
   int padding = 0;
   for (std::size_t s = 0; s < c.particles.slots(); ++s) {
     if (!c.particles.is_padding(s)) continue;
@@ -276,7 +271,7 @@ TYPED_TEST(NeighboursOf, WrapsPeriodicPositions) {
   MOLTEN_FLAVOUR;
   Points points = cube<Dim>(8, 0.1);
   for (std::size_t k = 0; k < points.size(); ++k) points[k][0] += 0.8 * (static_cast<int>(k % 5) - 2);
-  const AnyCloud c(points, 0.1, domain_between<Dim>(0, 0.8, {true, true, true}));
+  const Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(0, 0.8, {true, true, true}));
   for_each_particle(c.particles, [](std::size_t, const auto& x) {
     EXPECT_GE(x[0], 0);
     EXPECT_LT(x[0], 0.8);

@@ -64,10 +64,6 @@ template <int Dim, class Real> void run_until(State<Dim, Real>& s, double time) 
 
 template <class F> class SleepOf : public testing::Test {};
 TYPED_TEST_SUITE(SleepOf, Flavours, FlavourNames);
-#define MOLTEN_FLAVOUR                \
-  constexpr int Dim = TypeParam::dim; \
-  using Real = typename TypeParam::Real
-
 TYPED_TEST(SleepOf, WhatRestsFallsAsleepWhereItIs) {
   MOLTEN_FLAVOUR;
   const Scene scene = sleepy_scene(Dim);

@@ -61,10 +61,8 @@ template <int Dim> double gradient_factor(const Parameters<Dim>& p) {
 template <class F> class OperatorsOf : public testing::Test {};
 TYPED_TEST_SUITE(OperatorsOf, Flavours, FlavourNames);
 
-#define MOLTEN_FLAVOUR                   \
-  constexpr int Dim = TypeParam::dim;    \
-  using Real = typename TypeParam::Real; \
-  const double digits [[maybe_unused]] = std::is_same_v<Real, float> ? 1e-5 : 1e-10
+/// Round-off of such sums.
+template <class Real> constexpr double digits = sizeof(Real) == 4 ? 1e-5 : 1e-10;
 
 TYPED_TEST(OperatorsOf, KnownFactors) {
   MOLTEN_FLAVOUR;
@@ -84,7 +82,7 @@ TYPED_TEST(OperatorsOf, ContinuityOfLinearFlows) {
     set_velocity(s, flow);
     find_rates(s);
     for_each_inner(s, block.size, [&](std::size_t k, const auto&) {
-      EXPECT_NEAR(s.particles[compression_rate][0][k], -divergence * factor, 20 * digits);
+      EXPECT_NEAR(s.particles[compression_rate][0][k], -divergence * factor, 20 * digits<Real>);
     });
   };
   using X = std::array<double, 3>;
@@ -119,7 +117,7 @@ TYPED_TEST(OperatorsOf, StrainRateOfShearAndRotation) {
     set_velocity(s, flow);
     find_viscosity(s);
     for_each_inner(s, block.size, [&](std::size_t k, const auto&) {
-      EXPECT_NEAR(strain_magnitude(strain_of(s, k)), expected * factor, 10 * digits);
+      EXPECT_NEAR(strain_magnitude(strain_of(s, k)), expected * factor, 10 * digits<Real>);
     });
   };
   using X = std::array<double, 3>;
@@ -146,7 +144,7 @@ TYPED_TEST(OperatorsOf, StrainRateComponents) {
   for_each_inner(s, block.size, [&](std::size_t k, const auto&) {
     const auto D = strain_of(s, k);
     for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) EXPECT_NEAR(D(a, b), factor * (G[a][b] + G[b][a]), 20 * digits);
+      for (int b = 0; b < Dim; ++b) EXPECT_NEAR(D(a, b), factor * (G[a][b] + G[b][a]), 20 * digits<Real>);
   });
 }
 
@@ -257,8 +255,8 @@ TYPED_TEST(OperatorsOf, StressAndViscosityAreTheRheologys) {
   find_viscosity(s);
   const double D = 3 * gradient_factor(s.parameters), eta = s.parameters.smd.viscosity(D, 0);
   for_each_inner(s, block.size, [&](std::size_t k, const auto&) {
-    EXPECT_NEAR(s.particles[viscosity][0][k] / eta, 1, 2 * digits);
-    EXPECT_NEAR((s.particles[stress][SymTensor<Dim, Real>::index(0, 1)][k] * 1e6 / (eta * D)), 1, 2 * digits);
+    EXPECT_NEAR(s.particles[viscosity][0][k] / eta, 1, 2 * digits<Real>);
+    EXPECT_NEAR((s.particles[stress][SymTensor<Dim, Real>::index(0, 1)][k] * 1e6 / (eta * D)), 1, 2 * digits<Real>);
   });
 }
 
