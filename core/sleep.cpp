@@ -124,11 +124,12 @@ template <int Dim, class Real> void take_stock(State<Dim, Real>& s, std::size_t 
   const Stock stock = reduce_slots(
       end, Stock{},
       [&](std::size_t slot, Stock& sum) {
+        const double energy = kinetic_energy(s, slot);
+        lay_down(s, slot);  // padding, too: what a sort leaves there in a step's columns depends on the run's past
         if (p.is_padding(slot)) return;
         ++sum.count;
         sum.warm += slot >= first_warm;
-        sum.energy += kinetic_energy(s, slot);
-        lay_down(s, slot);
+        sum.energy += energy;
         if (s.features.stress)
           sum.viscosity = std::max(sum.viscosity, p[viscosity][0][slot] / (s.parameters.eos.rest_density *
                                                                            (1 + double(p[compression][0][slot]))));
