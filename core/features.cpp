@@ -121,6 +121,8 @@ FieldSet Features::columns() const {
   if (gradient_correction && (heat || laminar)) s |= field_set(FieldList<LaplacianCorrection>{});
   if (shifting) s |= field_set(FieldList<ShiftVelocity>{});
   if (sleep) s |= field_set(FieldList<RestTime>{});
+  if (sleep && heat) s |= field_set(FieldList<HeatRestTime>{});
+  if (sleep && heat && stress) s |= field_set(FieldList<RestTemperature>{});
   return s;
 }
 

@@ -59,7 +59,9 @@ MOLTEN_FIELD(VelocitySlope, VectorField, velocity_slope, "m/s2", "weighted sum o
 MOLTEN_FIELD(CompressionSlope, ScalarField, compression_slope, "1/s", "the same of the rates of compression");
 MOLTEN_FIELD(TemperatureSlope, ExactScalar, temperature_slope, "K/s", "the same of the rates of temperature");
 MOLTEN_FIELD(OlderCompressionRate, ScalarField, older_compression_rate, "1/s", "compression rate two steps ago");
-MOLTEN_FIELD(RestTime, ScalarField, rest_time, "s", "time since the particle last moved or changed");
+MOLTEN_FIELD(RestTime, ScalarField, rest_time, "s", "time since the particle last moved or its density changed");
+MOLTEN_FIELD(HeatRestTime, ScalarField, heat_rest_time, "s", "time since its temperature last changed");
+MOLTEN_FIELD(RestTemperature, ScalarField, rest_temperature, "degrees", "temperature when it was last active");
 
 // What the passes compute for each other, from the above.
 MOLTEN_FIELD(LocalPosition, StepVector, local_position, "m",
@@ -102,7 +104,7 @@ using AllFields =
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
-              RestTime>;
+              RestTime, HeatRestTime, RestTemperature>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

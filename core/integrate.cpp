@@ -38,17 +38,21 @@ template <int Dim, class Real> class Integrator {
     advance_compression(slot);
     if (s_.features.internal_energy) internal_energy_[slot] += kick_ * internal_energy_rate_[slot];
     if (s_.features.heat) temperature_[slot] += dt_ * temperature_rate_[slot];
-    if (s_.features.sleep) rest_time_[slot] = at_rest(slot) ? rest_time_[slot] + static_cast<Real>(dt_) : 0;
+    if (s_.features.sleep) count_rest(slot);
     return (motion.position - before).squaredNorm();
   }
 
  private:
-  bool at_rest(std::size_t slot) const {
+  /// How long motion, and heat, have been within the bounds of rest.
+  void count_rest(std::size_t slot) const {
     const RestBounds& bounds = *s_.parameters.rest;
+    const auto count = [this](Real& time, bool at_rest) { time = at_rest ? time + static_cast<Real>(dt_) : 0; };
     double v2 = 0;
     for (int d = 0; d < Dim; ++d) v2 += double(velocity_[d][slot]) * velocity_[d][slot];
-    return v2 <= bounds.speed * bounds.speed && std::abs(compression_rate_[slot]) <= bounds.density_rate &&
-           (!s_.features.heat || std::abs(temperature_rate_[slot]) <= bounds.temperature_rate);
+    count(rest_time_[slot],
+          v2 <= bounds.speed * bounds.speed && std::abs(compression_rate_[slot]) <= bounds.density_rate);
+    if (s_.features.heat) count(heat_rest_time_[slot], std::abs(temperature_rate_[slot]) <= bounds.temperature_rate);
+    if (rest_temperature_) rest_temperature_[slot] = static_cast<Real>(temperature_[slot]);
   }
 
   Motion<Dim> kicked(std::size_t slot) const {
@@ -117,6 +121,8 @@ template <int Dim, class Real> class Integrator {
   double* internal_energy_ = p_[internal_energy][0];
   const Real* internal_energy_rate_ = p_[internal_energy_rate][0];
   Real* rest_time_ = p_[rest_time][0];
+  Real* heat_rest_time_ = p_[heat_rest_time][0];
+  Real* rest_temperature_ = p_[rest_temperature][0];
 };
 
 /// What the pair passes read of one particle, from its state.
@@ -157,6 +163,7 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
       },
       [](double& a, double b) { a = std::max(a, b); });
   s.neighbours.moved(std::sqrt(way2));
+  s.sleep.warm_time += s.clock.dt;
   s.sleep.travel += (s.parameters.eos.sound_speed + std::sqrt(s.extremes.speed2)) * s.clock.dt;
 }
 

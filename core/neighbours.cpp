@@ -491,20 +491,26 @@ template <int Dim, class Real> class Neighbours<Dim, Real>::Lister {
 
 template <int Dim, class Real> void Neighbours<Dim, Real>::list_neighbours(const Particles<Dim, Real>& particles) {
   number_shifts();
-  const std::size_t warm = first_slot(Block::warm) / cluster_size, active = first_slot(Block::active) / cluster_size;
-  warm_chunks_ = (active - warm + clusters_a_chunk - 1) / clusters_a_chunk;
-  chunks_.resize(warm_chunks_ + (clusters() - active + clusters_a_chunk - 1) / clusters_a_chunk);
-  list_clusters(warm, active, 0, particles);
-  list_clusters(active, clusters(), warm_chunks_, particles);
+  list_clusters(chunks_, first_slot(Block::active) / cluster_size, clusters(), particles);
+  warm_listed_ = false;
 }
 
-/// Lists the clusters from begin to end in the chunks from first_chunk on.
 template <int Dim, class Real>
-void Neighbours<Dim, Real>::list_clusters(std::size_t begin, std::size_t end, std::size_t first_chunk,
+std::span<const ClusterChunk> Neighbours<Dim, Real>::warm_chunks(const Particles<Dim, Real>& particles) {
+  if (!warm_listed_)
+    list_clusters(warm_chunks_, first_slot(Block::warm) / cluster_size, first_slot(Block::active) / cluster_size,
+                  particles);
+  warm_listed_ = true;
+  return warm_chunks_;
+}
+
+/// Lists the clusters from begin to end.
+template <int Dim, class Real>
+void Neighbours<Dim, Real>::list_clusters(std::vector<ClusterChunk>& chunks, std::size_t begin, std::size_t end,
                                           const Particles<Dim, Real>& particles) {
-  const std::size_t count = (end - begin + clusters_a_chunk - 1) / clusters_a_chunk;
-  for_each_piece_with(count, Lister(*this, particles), [&](std::size_t k, Lister& lister) {
-    ClusterChunk& chunk = chunks_[first_chunk + k];
+  chunks.resize((end - begin + clusters_a_chunk - 1) / clusters_a_chunk);
+  for_each_piece_with(chunks.size(), Lister(*this, particles), [&](std::size_t k, Lister& lister) {
+    ClusterChunk& chunk = chunks[k];
     chunk.begin = static_cast<std::uint32_t>(begin + k * clusters_a_chunk);
     chunk.end = static_cast<std::uint32_t>(std::min(end, begin + (k + 1) * clusters_a_chunk));
     lister.list(chunk);
@@ -512,9 +518,12 @@ void Neighbours<Dim, Real>::list_clusters(std::size_t begin, std::size_t end, st
 }
 
 template <int Dim, class Real> std::size_t Neighbours<Dim, Real>::bytes() const {
-  std::size_t sum = bytes_of(cells_) + bytes_of(column_begin_) + bytes_of(entry_begin_) + bytes_of(chunks_);
+  std::size_t sum = bytes_of(cells_) + bytes_of(column_begin_) + bytes_of(entry_begin_);
   for (const std::vector<float>& side : lasting_boxes_) sum += bytes_of(side);
-  for (const ClusterChunk& c : chunks_) sum += bytes_of(c.entries) + bytes_of(c.entry_begin);
+  for (const auto* chunks : {&chunks_, &warm_chunks_}) {
+    sum += bytes_of(*chunks);
+    for (const ClusterChunk& c : *chunks) sum += bytes_of(c.entries) + bytes_of(c.entry_begin);
+  }
   return sum;
 }
 

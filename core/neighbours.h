@@ -82,9 +82,10 @@ template <int Dim, class Real> class Neighbours {
 
   const Grid<Dim>& grid() const { return grid_; }
   const NeighbourSettings& settings() const { return settings_; }
-  /// The lists of active clusters, and of warm ones.
-  std::span<const ClusterChunk> chunks() const { return std::span(chunks_).subspan(warm_chunks_); }
-  std::span<const ClusterChunk> warm_chunks() const { return std::span(chunks_).first(warm_chunks_); }
+  /// The lists of active clusters.
+  std::span<const ClusterChunk> chunks() const { return chunks_; }
+  /// Those of warm clusters; made when first asked for after a sort.
+  std::span<const ClusterChunk> warm_chunks(const Particles<Dim, Real>& particles);
   const ShiftTable<Dim>& shifts() const { return shifts_; }
   const Cell<Dim>& cell(std::size_t cluster) const { return cells_[cluster]; }
   std::size_t clusters() const { return cells_.size(); }
@@ -117,7 +118,7 @@ template <int Dim, class Real> class Neighbours {
   void place_boxes(Particles<Dim, Real>& particles);
   void find_boxes(Particles<Dim, Real>& particles, std::size_t first_cluster);
   void list_neighbours(const Particles<Dim, Real>& particles);
-  void list_clusters(std::size_t begin, std::size_t end, std::size_t first_chunk,
+  void list_clusters(std::vector<ClusterChunk>& chunks, std::size_t begin, std::size_t end,
                      const Particles<Dim, Real>& particles);
   void number_shifts();
   double list_range() const;
@@ -131,8 +132,8 @@ template <int Dim, class Real> class Neighbours {
   Boxes boxes_;
   std::array<std::vector<float>, 2 * Dim> lasting_boxes_;  // with blocks
   ShiftTable<Dim> shifts_;
-  std::vector<ClusterChunk> chunks_;  // warm ones first
-  std::size_t warm_chunks_ = 0;
+  std::vector<ClusterChunk> chunks_, warm_chunks_;
+  bool warm_listed_ = false;
 
   struct Entry {
     float along;        // position along the column, m from the grid's lower end

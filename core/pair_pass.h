@@ -145,8 +145,7 @@ template <int N, int Dim, class Real, class KernelType, class Finish, class... T
       for (int d = 0; d < Dim; ++d) shifts_.push_back(static_cast<Real>(shift[d]));
   }
 
-  void run() const {
-    const auto chunks = neighbours_.chunks();
+  void run(std::span<const ClusterChunk> chunks) const {
     for_each_piece(chunks.size(), [&](std::size_t k) { run_chunk(chunks[k], k); });
   }
 
@@ -276,12 +275,21 @@ template <class... Terms>
 concept Fusable = disjoint < typename UnionOf<typename Terms::Reads...>::type,
 typename UnionOf<typename Terms::Sums...>::type > ;
 
+/// Runs fused terms over the listed pairs of some chunks on N lanes.
+template <int N, int Dim, class Real, class KernelType, class Finish, class... Terms>
+requires Fusable<Terms...>
+void pair_pass_over(std::span<const ClusterChunk> chunks, const Neighbours<Dim, Real>& neighbours,
+                    const Particles<Dim, Real>& particles, const KernelType& kernel, const Finish& finish,
+                    const Terms&... terms) {
+  PairPass<N, Dim, Real, KernelType, Finish, Terms...>(neighbours, particles, kernel, finish, terms...).run(chunks);
+}
+
 /// Runs fused terms over all pairs on N lanes.
 template <int N, int Dim, class Real, class KernelType, class Finish, class... Terms>
 requires Fusable<Terms...>
 void pair_pass(const Neighbours<Dim, Real>& neighbours, const Particles<Dim, Real>& particles, const KernelType& kernel,
                const Finish& finish, const Terms&... terms) {
-  PairPass<N, Dim, Real, KernelType, Finish, Terms...>(neighbours, particles, kernel, finish, terms...).run();
+  pair_pass_over<N>(neighbours.chunks(), neighbours, particles, kernel, finish, terms...);
 }
 
 /// A finish particle by particle, without reductions: f(slot, sums as Values<Sums, Dim, Real>).

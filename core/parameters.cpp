@@ -63,6 +63,7 @@ template <int Dim> RestBounds rest_bounds(const SleepBounds& scene, const Parame
   r.speed = scene.speed.value_or(1e-3 * sound);
   r.density_rate = scene.density_rate.value_or(r.speed / h);
   r.temperature_rate = scene.temperature_rate.value_or(1e-3 * hot_to_cold * p.diffusivity / (h * h));
+  r.temperature = scene.temperature.value_or(0.01 * hot_to_cold);
   r.after = scene.after.value_or(40 * h / sound);
   return r;
 }

@@ -47,6 +47,12 @@ template <int Dim> struct Parameters {
   Domain<Dim> domain;
 };
 
+/// The largest time step of conduction (s).
+template <int Dim> double conduction_limit(const Parameters<Dim>& p) {
+  constexpr double conduction_constant = 3.5;  // h² ∫|W'|/r of the Wendland kernel, the largest of the common ones
+  return p.courant_conduction * p.smoothing_length * p.smoothing_length / (2 * conduction_constant * p.diffusivity);
+}
+
 /// What the start of a run is made of: the filled bodies, one entry a particle.
 struct Start {
   double spacing = 0;                                     // m

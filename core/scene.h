@@ -175,6 +175,7 @@ struct SleepBounds {
   std::optional<double> speed;             // m/s
   std::optional<double> density_rate;      // 1/s; rate of density over the rest density
   std::optional<double> temperature_rate;  // K/s
+  std::optional<double> temperature;       // K; by which one at rest may change where the viscosity varies
   std::optional<double> after;             // s at rest before a particle may sleep
 };
 

@@ -11,10 +11,12 @@ namespace molten {
 
 void Sleep::archive(Archive& a) {
   a.value("sleep/asleep", asleep);
+  a.value("sleep/warm", warm);
   a.value("sleep/taken_energy", taken_energy);
   a.value("sleep/viscosity", viscosity);
   a.value("sleep/travel", travel);
   a.value("sleep/waste", waste);
+  a.value("sleep/warm_time", warm_time);
   a.value("sleep/looked", looked);
 }
 
@@ -114,27 +116,32 @@ template <int Dim, class Real> double kinetic_energy(const State<Dim, Real>& s, 
 /// What the sleepers are, all told; of those in slots below `end`.
 template <int Dim, class Real> void take_stock(State<Dim, Real>& s, std::size_t end) {
   struct Stock {
-    std::int64_t count = 0;
+    std::int64_t count = 0, warm = 0;
     double energy = 0, viscosity = 0;
   };
   const Particles<Dim, Real>& p = s.particles;
+  const std::size_t first_warm = s.neighbours.first_slot(Block::warm);
   const Stock stock = reduce_slots(
       end, Stock{},
       [&](std::size_t slot, Stock& sum) {
+        const double energy = kinetic_energy(s, slot);
+        lay_down(s, slot);  // padding, too: what a sort leaves there in a step's columns depends on the run's past
         if (p.is_padding(slot)) return;
         ++sum.count;
-        sum.energy += kinetic_energy(s, slot);
-        lay_down(s, slot);
+        sum.warm += slot >= first_warm;
+        sum.energy += energy;
         if (s.features.stress)
           sum.viscosity = std::max(sum.viscosity, p[viscosity][0][slot] / (s.parameters.eos.rest_density *
                                                                            (1 + double(p[compression][0][slot]))));
       },
       [](Stock& a, const Stock& b) {
         a.count += b.count;
+        a.warm += b.warm;
         a.energy += b.energy;
         a.viscosity = std::max(a.viscosity, b.viscosity);
       });
   s.sleep.asleep = stock.count;
+  s.sleep.warm = stock.warm;
   s.sleep.taken_energy += stock.energy;
   s.sleep.viscosity = stock.viscosity;
 }
@@ -159,35 +166,81 @@ bool any_asleep(const Marks& marks, const Marks& asleep) {
 }  // namespace
 
 template <int Dim, class Real> void mark_sleepers(State<Dim, Real>& s) {
-  const Particles<Dim, Real>& p = s.particles;
-  s.sleep.cells = RestCells<Dim, Real>(s).of_slots(0, s.neighbours.first_slot(Block::active),
-                                                   [&](std::size_t slot) { return !p.is_padding(slot); });
+  const RestCells<Dim, Real> cells(s);
+  const auto particle = [&p = s.particles](std::size_t slot) { return !p.is_padding(slot); };
+  s.sleep.cold = cells.of_slots(0, s.neighbours.first_slot(Block::warm), particle);
+  s.sleep.still = cells.of_slots(0, s.neighbours.first_slot(Block::active), particle);
 }
+
+namespace {
+
+/// Which cells must be active or warm, and which a sort would make so: one cell more around them.
+struct Calls {
+  Marks active, warm, wide_active, wide_warm;
+};
+
+template <int Dim, class Real> Calls find_calls(const State<Dim, Real>& s, const RestCells<Dim, Real>& cells) {
+  const Particles<Dim, Real>& p = s.particles;
+  const auto after = static_cast<Real>(s.parameters.rest->after);
+  const std::size_t first = s.neighbours.first_slot(Block::warm);
+  const auto restless = [&](const Real* time) {
+    return cells.widened(
+        cells.of_slots(first, p.slots(), [&](std::size_t slot) { return !p.is_padding(slot) && time[slot] < after; }));
+  };
+  Calls calls;
+  calls.active = restless(p[rest_time][0]);
+  calls.wide_active = cells.widened(calls.active);
+  if (!s.features.heat) return calls;
+  calls.warm = restless(p[heat_rest_time][0]);
+  calls.wide_warm = cells.widened(calls.warm);
+  return calls;
+}
+
+/// Where a particle goes at a sort of all.
+Block block_for(const Calls& calls, std::size_t cell) {
+  if (calls.wide_active[cell]) return Block::active;
+  return !calls.wide_warm.empty() && calls.wide_warm[cell] ? Block::warm : Block::asleep;
+}
+
+/// How many particles would do with less than they get; heat alone counts for a third of all.
+template <int Dim, class Real>
+double count_idle(const State<Dim, Real>& s, const RestCells<Dim, Real>& cells, const Calls& calls) {
+  const Particles<Dim, Real>& p = s.particles;
+  const std::size_t first = s.neighbours.first_slot(Block::warm), first_active = s.neighbours.first_slot(Block::active);
+  const std::int64_t thirds = reduce_slots(
+      p.slots() - first, std::int64_t{0},
+      [&](std::size_t k, std::int64_t& n) {
+        if (p.is_padding(first + k)) return;
+        const Block now = first + k < first_active ? Block::warm : Block::active;
+        const Block then = std::min(now, block_for(calls, cells.of(first + k)));
+        constexpr std::array<int, block_count> cost = {0, 1, 3};
+        n += cost[static_cast<std::size_t>(now)] - cost[static_cast<std::size_t>(then)];
+      },
+      [](std::int64_t& a, std::int64_t b) { a += b; });
+  return static_cast<double>(thirds) / 3;
+}
+
+}  // namespace
 
 template <int Dim, class Real> void wake_and_rest(State<Dim, Real>& s) {
   Sleep& sleep = s.sleep;
   const Particles<Dim, Real>& p = s.particles;
   // A disturbance that was not at a cell at the last look has since crossed half of it at most.
-  if (sleep.travel < s.parameters.support_radius / 2) return;
+  const bool heat_waits = sleep.warm > 0 && sleep.warm_time > conduction_limit(s.parameters) / 2;
+  if (sleep.travel < s.parameters.support_radius / 2 && !heat_waits) return;
   const auto scope = s.timer.scope("wake and rest");
   sleep.travel = 0;
-  const std::size_t first = s.neighbours.first_slot(Block::active);
+  if (s.features.heat) conduct_at_rest(s);
   const RestCells<Dim, Real> cells(s);
-  const auto rest = p[rest_time][0];
-  const auto after = static_cast<Real>(s.parameters.rest->after);
-  const Marks needed = cells.widened(
-      cells.of_slots(first, p.slots(), [&](std::size_t slot) { return !p.is_padding(slot) && rest[slot] < after; }));
-  const Marks kept = cells.widened(needed);
-  const std::int64_t idle = reduce_slots(
-      p.slots() - first, std::int64_t{0},
-      [&](std::size_t k, std::int64_t& n) { n += !p.is_padding(first + k) && !kept[cells.of(first + k)]; },
-      [](std::int64_t& a, std::int64_t b) { a += b; });
-  sleep.waste += static_cast<double>(idle * (s.clock.step - sleep.looked));
+  const Calls calls = find_calls(s, cells);
+  sleep.waste += count_idle(s, cells, calls) * static_cast<double>(s.clock.step - sleep.looked);
   sleep.looked = s.clock.step;
-  if (sleep.waste < static_cast<double>(p.count()) && !any_asleep(needed, sleep.cells)) return;
+  const bool calm =
+      !any_asleep(calls.active, sleep.still) && (calls.warm.empty() || !any_asleep(calls.warm, sleep.cold));
+  if (calm && sleep.waste < static_cast<double>(p.count())) return;
   std::vector<Block> block_of(p.slots(), Block::asleep);
   for_each_slot(p.slots(), [&](std::size_t slot) {
-    if (!p.is_padding(slot) && kept[cells.of(slot)]) block_of[slot] = Block::active;
+    if (!p.is_padding(slot)) block_of[slot] = block_for(calls, cells.of(slot));
   });
   sort_in_blocks(s, block_of);
   sleep.waste = 0;
@@ -203,7 +256,10 @@ template <int Dim, class Real> void sort_active(State<Dim, Real>& s) {
     return;
   }
   std::vector<Block> block_of(s.particles.slots(), Block::active);
-  if (in_blocks) std::fill_n(block_of.begin(), s.neighbours.first_slot(Block::active), Block::asleep);
+  if (in_blocks) {
+    std::fill_n(block_of.begin(), s.neighbours.first_slot(Block::active), Block::warm);
+    std::fill_n(block_of.begin(), s.neighbours.first_slot(Block::warm), Block::asleep);
+  }
   sort_in_blocks(s, block_of);
 }
 

@@ -54,7 +54,7 @@ template <int Dim, class Real> struct State {
   void archive(Archive& a);
   std::size_t bytes() const {
     return particles.bytes() + neighbours.bytes() + near_wall.capacity() + wall_support.bytes() +
-           sleep.cells.capacity();
+           sleep.still.capacity() + sleep.cold.capacity();
   }
 };
 

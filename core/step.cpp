@@ -69,7 +69,7 @@ template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s) {
       if (s.contact.may_touch(point, s.parameters.spacing)) s.near_wall[c] = 1;
     }
   });
-  if (s.features.wall_support) s.wall_support.mark(s.particles, first * cluster_size);
+  if (s.features.wall_support) s.wall_support.mark(s.particles, s.neighbours.first_slot(Block::warm));
 }
 
 template <int Dim, class Real> void require_sane(const State<Dim, Real>& s) {
@@ -99,10 +99,7 @@ template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
     // The force of a varying viscosity has two parts that both damp the shortest waves: half the step is stable.
     const double viscous = s.features.stress ? p.courant_viscous / 2 : p.courant_viscous;
     if (s.extremes.kinematic_viscosity > 0) limit(viscous * h * h / s.extremes.kinematic_viscosity, Limit::viscous);
-    if (p.diffusivity > 0) {
-      constexpr double conduction_constant = 3.5;  // h² ∫|W'|/r of the Wendland kernel, the largest of the common ones
-      limit(p.courant_conduction * h * h / (2 * conduction_constant * p.diffusivity), Limit::conduction);
-    }
+    if (p.diffusivity > 0) limit(conduction_limit(p), Limit::conduction);
   }
   // Land on the stop; two halves rather than a step and a sliver. (The round-off of summed steps is no sliver.)
   const double left = clock.stop - clock.time;

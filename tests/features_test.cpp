@@ -132,6 +132,11 @@ TEST(Features, DensityFiltersAndSummationAddTheirPasses) {
 
 TEST(Features, SleepAddsItsColumnAndItsPass) {
   expect_adds([](Scene& s) { s.numerics.sleep.emplace(); }, {{"rest_time"}, {}, {"wake and rest"}});
+  Scene scene = minimal();
+  scene.fluid.heat = Heat{};
+  const Names awake = columns_of(features_of(scene));
+  scene.numerics.sleep.emplace();
+  EXPECT_EQ(difference(columns_of(features_of(scene)), awake), (Names{"rest_time", "heat_rest_time"}));
 }
 
 TEST(Features, WallsAddTheirPass) {

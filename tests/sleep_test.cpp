@@ -43,8 +43,8 @@ Scene sleepy_scene(int dim) {
 
 Scene hot_sleepy_scene(int dim) {
   Scene scene = sleepy_scene(dim);
-  scene.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 15}, 60, 20};
-  scene.fluid.heat = Heat{1e-4, std::nullopt, 20, 90};
+  scene.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 150}, 0.6, 0.2};
+  scene.fluid.heat = Heat{1e-2, std::array<double, 2>{40, 60}, 20, 90};
   scene.numerics.integrator = IntegratorKind::symplectic_euler;
   return scene;
 }
@@ -156,6 +156,74 @@ TYPED_TEST(SleepOf, ADropWakesWhatItHits) {
   EXPECT_GT(std::abs(whole), n * s.parameters.particle_mass * 0.01) << "or the bound says nothing";
 }
 
+// ---- heat -----------------------------------------------------------------------------------------------------------
+
+/// A slab at rest, its left half hot.
+Start half_hot(const Scene& scene) {
+  const bool flat = scene.dimensions == 2;
+  Start start = start_of(scene, lattice(flat ? std::vector{100, 10} : std::vector{60, 5, 5}, spacing), spacing);
+  for (std::size_t k = 0; k < start.position.size(); ++k)
+    start.temperature[k] = start.position[k][0] < (flat ? 50 : 30) * spacing ? 90 : 20;
+  return start;
+}
+
+Scene conducting_scene(int dim) {
+  Scene scene = sleepy_scene(dim);
+  scene.fluid.heat = Heat{1e-2, std::nullopt, 20, 90};
+  scene.numerics.sleep->temperature_rate = 0.5;
+  return scene;
+}
+
+TYPED_TEST(SleepOf, HeatFlowsWhereNothingMoves) {
+  MOLTEN_FLAVOUR;
+  Scene scene = conducting_scene(Dim);
+  const Start start = half_hot(scene);
+  auto s = state_of<Dim, Real>(scene, start);
+  scene.numerics.sleep.reset();
+  auto twin = state_of<Dim, Real>(scene, start);
+  const auto n = static_cast<std::int64_t>(s.particles.count());
+  run_until(s, 0.1);
+  EXPECT_EQ(s.sleep.asleep, n);
+  EXPECT_GT(s.sleep.warm, n / 20);
+  EXPECT_LT(s.sleep.warm, 9 * n / 10);
+  const std::int64_t narrow = s.sleep.warm;
+  run_until(s, 0.2);
+  EXPECT_EQ(s.sleep.asleep, n) << "heat alone wakes nobody whose viscosity is constant";
+  EXPECT_GE(s.sleep.warm, narrow);
+  run_until(twin, s.clock.time);
+  conduct_at_rest(s);  // for the few steps that have waited
+  const auto T = by_id(s, temperature, 0), true_T = by_id(twin, temperature, 0);
+  double furthest = 0, flowed = 0;
+  for (const auto& [number, value] : T) {
+    furthest = std::max(furthest, std::abs(value - true_T.at(number)));
+    flowed = std::max(flowed, std::abs(value - start.temperature[static_cast<std::size_t>(number)]));
+  }
+  EXPECT_LT(furthest, 0.5 * 0.2 + 0.1) << "the bound on the rate for so long, and that of longer time steps";
+  EXPECT_GT(flowed, 20);
+  EXPECT_NEAR(diagnose(s).heat / diagnose(twin).heat, 1, 1e-4);
+}
+
+TYPED_TEST(SleepOf, WhatMeltsWakes) {
+  MOLTEN_FLAVOUR;
+  Scene scene = conducting_scene(Dim);
+  scene.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 150}, 0.6, 0.2};
+  scene.fluid.heat->melting_range = std::array<double, 2>{40, 60};
+  scene.fluid.heat->diffusivity = 2e-3;
+  scene.numerics.sleep->temperature = 5;
+  auto s = state_of<Dim, Real>(scene, half_hot(scene));
+  const auto n = static_cast<std::int64_t>(s.particles.count());
+  while (s.sleep.asleep < n && s.clock.time < 0.1) step(s);
+  EXPECT_EQ(s.sleep.asleep, n);
+  const auto asleep_at = by_id(s, temperature, 0);
+  while (s.sleep.asleep == n && s.clock.time < 0.2) step(s);
+  EXPECT_LT(s.sleep.asleep, n);
+  double change = 0;
+  for (const auto& [number, T] : by_id(s, temperature, 0))
+    change = std::max(change, std::abs(T - asleep_at.at(number)));
+  EXPECT_GE(change, 5);
+  EXPECT_LT(change, 7);
+}
+
 /// Keeps what is archived in memory.
 class MemoryArchive : public Archive {
  public:
@@ -201,7 +269,7 @@ template <int Dim, class Real> auto archived_after(const Scene& scene, const Sta
 TYPED_TEST(SleepOf, GivesTheSameBitsForAnyNumberOfThreads) {
   MOLTEN_FLAVOUR;
   for (const Scene& scene : {sleepy_scene(Dim), hot_sleepy_scene(Dim)}) {
-    const Start start = slab_and_drop(scene, 1.0);
+    const Start start = scene.fluid.heat ? half_hot(scene) : slab_and_drop(scene, 1.0);
     EXPECT_EQ((archived_after<Dim, Real>(scene, start, 1, 120)), (archived_after<Dim, Real>(scene, start, 3, 120)));
   }
 }
@@ -209,7 +277,7 @@ TYPED_TEST(SleepOf, GivesTheSameBitsForAnyNumberOfThreads) {
 TYPED_TEST(SleepOf, SurvivesARestartBitForBit) {
   MOLTEN_FLAVOUR;
   for (const Scene& scene : {sleepy_scene(Dim), hot_sleepy_scene(Dim)}) {
-    const Start start = slab_and_drop(scene, 1.0);
+    const Start start = scene.fluid.heat ? half_hot(scene) : slab_and_drop(scene, 1.0);
     auto whole = state_of<Dim, Real>(scene, start);
     bool slept = false;
     for (int piece = 0; piece < 20; ++piece) {

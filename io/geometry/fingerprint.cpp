@@ -34,7 +34,8 @@ void add_numerics(Hash& hash, const Numerics& n) {
         n.fixed_dt.value_or(0), n.density_diffusion, n.wall_support ? 1.0 : 0.0})
     hash.add(number);
   if (n.sleep)
-    for (const auto& bound : {n.sleep->speed, n.sleep->density_rate, n.sleep->temperature_rate, n.sleep->after})
+    for (const auto& bound :
+         {n.sleep->speed, n.sleep->density_rate, n.sleep->temperature_rate, n.sleep->temperature, n.sleep->after})
       hash.add(bound.value_or(-1));
 }
 

@@ -166,12 +166,13 @@ void read_courant(const TomlReader& keys, Numerics& numerics) {
 }
 
 void read_sleep(const TomlReader& keys, Numerics& numerics) {
-  const auto table = keys.table("sleep", {"speed", "density_rate", "temperature_rate", "after"});
+  const auto table = keys.table("sleep", {"speed", "density_rate", "temperature_rate", "temperature", "after"});
   if (!table) return;
   SleepBounds& bounds = numerics.sleep.emplace();
   table->number("speed", bounds.speed, Range::positive("m/s"));
   table->number("density_rate", bounds.density_rate, Range::positive("1/s"));
   table->number("temperature_rate", bounds.temperature_rate, Range::not_negative("K/s"));
+  table->number("temperature", bounds.temperature, Range::not_negative("K"));
   table->number("after", bounds.after, Range::positive("s"));
 }
 
