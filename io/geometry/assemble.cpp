@@ -201,6 +201,12 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
   return walls;
 }
 
+template <int Dim> Contact<Dim> build_contact(const Scene& scene, const Parameters<Dim>& p) {
+  return {build_walls<Dim>(scene, p.spacing), p.contact_radius, p.support_radius};
+}
+
+template Contact<2> build_contact(const Scene&, const Parameters<2>&);
+template Contact<3> build_contact(const Scene&, const Parameters<3>&);
 template std::vector<Wall<2>> build_walls(const Scene&, double);
 template std::vector<Wall<3>> build_walls(const Scene&, double);
 

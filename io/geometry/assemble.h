@@ -18,6 +18,9 @@ TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, boo
 /// The walls of a scene for the solver.
 template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing);
 
+/// The same, ready for contact with particles of the run.
+template <int Dim> Contact<Dim> build_contact(const Scene& scene, const Parameters<Dim>& parameters);
+
 /// The walls as one surface for pictures (2-D outlines: thin strips); planes become squares about the fluid.
 TriangleMesh picture_of_walls(const Scene& scene, const Start& start);
 

@@ -36,7 +36,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 template <int Dim, class Real> void print_run(const Scene& scene, const Features& features, const Start& start) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
-  Contact<Dim> contact(build_walls<Dim>(scene, start.spacing), p.contact_radius, p.support_radius);
+  Contact<Dim> contact = build_contact(scene, p);
   require_no_overlap(scene, start, contact);
   State<Dim, Real> s = make_state<Dim, Real>(features, p, std::move(contact), start);
   // A few steps tell the time step, its limit and the speed of this machine.

@@ -226,7 +226,7 @@ template <int Dim, class Real>
 Runner<Dim, Real> prepare_run(const Scene& scene, const std::filesystem::path& folder, const Features& features,
                               const Start& start) {
   const Parameters<Dim> parameters = parameters_of<Dim>(scene, start);
-  Contact<Dim> contact(build_walls<Dim>(scene, start.spacing), parameters.contact_radius, parameters.support_radius);
+  Contact<Dim> contact = build_contact(scene, parameters);
   require_no_overlap(scene, start, contact);
   return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(contact), start),
                            fingerprint(scene, start));
