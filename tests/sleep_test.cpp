@@ -129,7 +129,6 @@ TYPED_TEST(SleepOf, TakesTheEnergyOfWhatFallsAsleepAndNoMore) {
   EXPECT_EQ(before, by_id(s, position, 0));
 }
 
-/// The slab's right end has felt nothing, its left end has been hit.
 TYPED_TEST(SleepOf, ADropWakesWhatItHits) {
   MOLTEN_FLAVOUR;
   Scene scene = sleepy_scene(Dim);
