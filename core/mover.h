@@ -3,9 +3,18 @@
 
 #include <cmath>
 
+#include "core/simd.h"
 #include "core/state.h"
 
 namespace molten {
+
+/// The particles of a cluster, for arithmetic in double.
+using ClusterLanes = Lanes<double, cluster_size>;
+
+/// Motion of a cluster's particles.
+template <int Dim> struct ClusterMotion {
+  Vec<Dim, ClusterLanes> position, velocity, rate;  // m, m/s, m/s
+};
 
 template <int Dim, class Real> class Mover {
  public:
@@ -14,12 +23,41 @@ template <int Dim, class Real> class Mover {
 
   /// Moves one particle by a step along its rate; says whether it bounced.
   bool move(std::size_t slot, Motion<Dim>& m) const {
-    if (always_collide_ || s_.near_wall[slot / cluster_size]) return s_.contact.move(m, s_.clock.dt) > 0;
+    if (may_collide(slot / cluster_size)) return s_.contact.move(m, s_.clock.dt) > 0;
     m.position += s_.clock.dt * m.rate;
     return false;
   }
 
+  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding stays.
+  ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m) const {
+    ClusterLanes bounced(0.0);
+    if (may_collide(cluster)) {
+      for (int n = 0; n < cluster_size; ++n)
+        if (!s_.particles.is_padding(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(m, n)));
+    } else {
+      m.position += ClusterLanes(s_.clock.dt) * m.rate;
+    }
+    return bounced;
+  }
+
  private:
+  bool may_collide(std::size_t cluster) const { return always_collide_ || s_.near_wall[cluster]; }
+
+  bool collide(ClusterMotion<Dim>& of, int n) const {
+    Motion<Dim> m;
+    for (int d = 0; d < Dim; ++d) {
+      m.position[d] = lane(of.position[d], n);
+      m.velocity[d] = lane(of.velocity[d], n);
+      m.rate[d] = lane(of.rate[d], n);
+    }
+    const bool bounced = s_.contact.move(m, s_.clock.dt) > 0;
+    for (int d = 0; d < Dim; ++d) {
+      set_lane(of.position[d], n, m.position[d]);
+      set_lane(of.velocity[d], n, m.velocity[d]);
+    }
+    return bounced;
+  }
+
   /// No particle gets further from where it was sorted than this (m).
   double longest_way() const {
     const double flow = std::sqrt(s_.extremes.speed2), dt = s_.clock.dt;
