@@ -122,15 +122,15 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
     chunk.rows.push_back(
         {chunk.end, static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(masks_.size())});
     entries_.resize(entries_.size() + ClusterChunk::mask_bits);
-    chunk.entries.assign(entries_.begin(), entries_.end());
-    chunk.masks.assign(masks_.begin(), masks_.end());
+    chunk.entries = std::vector<ListEntry>(entries_.begin(), entries_.end());  // no more than they need
+    chunk.masks = std::vector<std::uint16_t>(masks_.begin(), masks_.end());
   }
 
  private:
   static constexpr int along = Dim - 1;
   static constexpr int N = native_lanes<Real>, I = cluster_size, J = N / I;
   using Wide = Lanes<Real, N>;
-  static_assert(N >= cluster_size && clusters_a_row * shells <= 16);
+  static_assert(N >= cluster_size && clusters_a_row * shells <= 16 && shells == 3 && shell_bits == 2);
 
   struct Row {
     std::uint32_t begin, end;  // clusters
@@ -264,9 +264,19 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
     }
     entries_.resize(first + count);
     std::fill_n(flags_.begin() + static_cast<std::ptrdiff_t>(count), ClusterChunk::mask_bits, 0);
-    for (int bit = 0; bit < static_cast<int>(row.end - row.begin) * shells; ++bit)
-      for (std::size_t k = 0; k < count; k += ClusterChunk::mask_bits)
-        masks_.push_back(gather_bit(flags_.data() + k, bit));
+    for (std::uint32_t g = 0; g < own_count_; ++g) keep_shells(static_cast<int>(g), count);
+  }
+
+  /// The bits of one of the row's clusters.
+  void keep_shells(int g, std::size_t count) {
+    const std::size_t words = ClusterChunk::words(count), low = masks_.size(), high = low + words;
+    masks_.resize(low + shell_bits * words);
+    for (std::size_t w = 0; w < words; ++w) {
+      std::array<unsigned, shells> in;
+      for (int s = 0; s < shells; ++s) in[s] = gather_bit(flags_.data() + w * ClusterChunk::mask_bits, g * shells + s);
+      masks_[low + w] = static_cast<std::uint16_t>(in[0] | (in[2] & ~in[1]));
+      masks_[high + w] = static_cast<std::uint16_t>(in[2] & ~in[0]);
+    }
   }
 
   /// Positions of the row's particles from the origin of its first cluster.

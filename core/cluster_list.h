@@ -1,7 +1,7 @@
 // For every cluster, those of which a particle is within reach of one of its own.
 //
-// Neighbouring clusters of a column share one row of entries, with a mask of bits for each of them: a third of the
-// memory that lists of their own would take. There is a mask for each shell, too: the list is good until particles have
+// Neighbouring clusters of a column share one row of entries, with bits for each of them: half of the memory that
+// lists of their own would take. The bits tell the shell, too: the list is good until particles have
 // moved half a skin, but only the clusters within the support and what particles have moved so far can matter.
 #pragma once
 
@@ -22,6 +22,7 @@ using ListEntry = std::uint32_t;
 
 inline constexpr int clusters_a_row = 4;  // at most
 inline constexpr int shells = 3;          // shell s reaches as far as the support and (s + 1)/shells of the skin
+inline constexpr int shell_bits = 2;      // that number the smallest shell an entry is in, from 1 on; 0: in none
 
 /// Clusters that are handled together by one thread: the fixed block of all pair work.
 struct ClusterChunk {
@@ -33,10 +34,14 @@ struct ClusterChunk {
   std::uint32_t begin = 0, end = 0;  // clusters
   std::vector<Row> rows;             // and the end
   std::vector<ListEntry> entries;    // as seen from the first cluster of the row; mask_bits beyond the end
-  std::vector<std::uint16_t> masks;  // of each row's clusters, for each its shells: bit k of the words for entry k
+  std::vector<std::uint16_t> masks;  // of each row's clusters, for each the shell_bits: bit k of the words for entry k
 
   static constexpr std::size_t mask_bits = 16;
   std::size_t entries_of(std::size_t row) const { return rows[row + 1].first_entry - rows[row].first_entry; }
+  /// Which entries a shell holds, of the words of both bits.
+  static unsigned within(int shell, unsigned low, unsigned high) {
+    return shell == 0 ? low & ~high : shell == 1 ? low ^ high : low | high;
+  }
   static constexpr std::size_t words(std::size_t entries) { return (entries + mask_bits - 1) / mask_bits; }
   bool operator==(const ClusterChunk&) const = default;
 };
@@ -127,13 +132,14 @@ void ClusterList<Dim, Real>::for_each(const ClusterChunk& chunk, const ClusterOr
     // All lists of the row before the first is used: what comes after one list's last pair then waits for nothing.
     for (std::uint32_t k = 0; k < count; ++k) {
       const std::int32_t further = order.cells[first + k][along] - order.cells[first][along];
-      lengths[k] = select_less_by(chunk.entries.data() + row.first_entry,
-                                  chunk.masks.data() + row.first_mask + (k * shells + shell) * words, words,
-                                  shifts_.seen_from(further), lists.data() + k * room);
+      const std::uint16_t* const low = chunk.masks.data() + row.first_mask + k * shell_bits * words;
+      lengths[k] = select_less_by(chunk.entries.data() + row.first_entry, words, shifts_.seen_from(further),
+                                  lists.data() + k * room,
+                                  [=](std::size_t w) { return ClusterChunk::within(shell, low[w], low[words + w]); });
     }
     const ClusterChunk::Row& next = chunk.rows[r + 1];
     prefetch(chunk.entries.data() + next.first_entry, longest);
-    prefetch(chunk.masks.data() + next.first_mask, clusters_a_row * shells * words);
+    prefetch(chunk.masks.data() + next.first_mask, clusters_a_row * shell_bits * words);
     for (std::uint32_t k = 0; k < count; ++k)
       f(first + k, std::span<const ListEntry>(lists.data() + k * room, lengths[k]));
   }

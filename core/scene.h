@@ -185,7 +185,7 @@ struct Numerics {
   Resort resort = Resort::when_due;
   KernelKind kernel = KernelKind::wendland_c2;
   double smoothing_ratio = 1.3;  // smoothing length h / spacing
-  double skin = 0.2;             // of the list, in spacings
+  double skin = 0.3;             // of the list, in spacings
   IntegratorKind integrator = IntegratorKind::leap_frog;
   StateEquation state_equation = StateEquation::tait;
   double gamma = 7;                   // Tait exponent

@@ -324,19 +324,21 @@ inline int write_set_bits(unsigned mask, std::uint32_t first, std::uint32_t* to)
 #endif
 }
 
-/// Copies those numbers whose bits are set, less `by`; returns how many. Reads and writes up to 16 beyond the last.
-inline std::size_t select_less_by(const std::uint32_t* from, const std::uint16_t* masks, std::size_t words,
-                                  std::uint32_t by, std::uint32_t* to) {
+/// Copies those numbers whose bits are set, less `by`; returns how many. mask_of(w) has the bits of the 16 from 16 w
+/// on. Reads and writes up to 16 beyond the last.
+template <class MaskOf>
+inline std::size_t select_less_by(const std::uint32_t* from, std::size_t words, std::uint32_t by, std::uint32_t* to,
+                                  const MaskOf& mask_of) {
   std::size_t count = 0;
   for (std::size_t w = 0; w < words; ++w) {
+    unsigned mask = mask_of(w) & 0xffffu;
 #if defined(__AVX512F__)
     const __m512i numbers = _mm512_maskz_sub_epi32(0xffff, _mm512_loadu_si512(from + 16 * w),
                                                    _mm512_maskz_set1_epi32(0xffff, static_cast<int>(by)));
-    _mm512_storeu_si512(to + count, _mm512_maskz_compress_epi32(masks[w], numbers));
-    count += static_cast<std::size_t>(std::popcount(masks[w]));
+    _mm512_storeu_si512(to + count, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), numbers));
+    count += static_cast<std::size_t>(std::popcount(mask));
 #else
-    for (unsigned mask = masks[w]; mask; mask &= mask - 1)
-      to[count++] = from[16 * w + static_cast<unsigned>(std::countr_zero(mask))] - by;
+    for (; mask; mask &= mask - 1) to[count++] = from[16 * w + static_cast<unsigned>(std::countr_zero(mask))] - by;
 #endif
   }
   return count;
