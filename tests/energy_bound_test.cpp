@@ -2,10 +2,10 @@
 #include "core/energy_bound.h"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include "core/diagnostics.h"
 #include "tests/particle_sets.h"
+#include "tests/with_threads.h"
 
 namespace molten {
 namespace {
@@ -62,6 +62,9 @@ template <int Dim, class Real> State<Dim, Real> pressed(const Scene& scene, doub
 template <class F> class EnergyBoundOf : public testing::Test {};
 TYPED_TEST_SUITE(EnergyBoundOf, Flavours, FlavourNames);
 
+/// Round-off of an energy or of a share of it.
+template <class Real> constexpr double digits = sizeof(Real) == 4 ? 1e-6 : 1e-14;
+
 /// α particle by particle in the order of the slots, the surplus handed on as it is left.
 template <int Dim, class Real>
 std::vector<double> shares_in_sequence(const State<Dim, Real>& s, double dt, bool hand_on) {
@@ -93,7 +96,7 @@ TYPED_TEST(EnergyBoundOf, SurplusByBlocksIsThatInSequence) {
     integrate_and_collide(s);
     std::size_t n = 0, bounded = 0;
     for_each_particle(s.particles, [&](std::size_t k, const auto&) {
-      EXPECT_NEAR(s.particles[energy_share][0][k], expected[n], 1e-5);
+      EXPECT_NEAR(s.particles[energy_share][0][k], expected[n], 10 * digits<Real>);
       bounded += expected[n++] < 1;
     });
     EXPECT_GT(bounded, n / 20);
@@ -110,7 +113,7 @@ TYPED_TEST(EnergyBoundOf, EnergyNeverGrows) {
     for (int k = 0; k < 50; ++k) {
       const double kinetic = diagnose(s).kinetic_energy;
       step(s);
-      EXPECT_LE(energy(), before + 1e-6 * (kinetic + std::abs(before))) << "step " << k;
+      EXPECT_LE(energy(), before + digits<Real> * (kinetic + std::abs(before))) << "step " << k;
       before = energy();
     }
   }
@@ -130,11 +133,9 @@ TYPED_TEST(EnergyBoundOf, WithoutTheBoundItWouldGrow) {
 TYPED_TEST(EnergyBoundOf, SameBitsForAnyThreads) {
   MOLTEN_FLAVOUR;
   const auto run = [&](int threads) {
-    const int before = omp_get_max_threads();
-    omp_set_num_threads(threads);
+    const WithThreads set(threads);
     auto s = pressed<Dim, Real>(bounded_scene(Dim, 4e-3), 0.02);
     for (int k = 0; k < 20; ++k) step(s);
-    omp_set_num_threads(before);
     return std::vector<Real>(s.particles[velocity][0], s.particles[velocity][0] + s.particles.slots());
   };
   const auto one = run(1);
