@@ -298,16 +298,18 @@ struct Usable {
 
 /// The newest checkpoint that reads well; tells of those that don't.
 Usable newest_usable(const std::filesystem::path& folder) {
-  std::string reason = folder.string() + ": holds no checkpoint; start it with `molten run`";
+  std::vector<std::string> defects;
   for (const auto& file : list_checkpoints(folder)) {
     try {
-      return {file, read_checkpoint_head(file)};
+      const CheckpointHead head = read_checkpoint_head(file);
+      for (const std::string& defect : defects) fmt::print(stderr, "warning: {}; taking the one before\n", defect);
+      return {file, head};
     } catch (const Error& e) {
-      reason = e.what();
-      fmt::print(stderr, "warning: {}; trying the one before\n", reason);
+      defects.push_back(e.what());
     }
   }
-  throw Error(ExitCode::checkpoint, reason);
+  throw Error(ExitCode::checkpoint,
+              defects.empty() ? folder.string() + ": holds no checkpoint; start it with `molten run`" : defects[0]);
 }
 
 }  // namespace
