@@ -155,6 +155,26 @@ TYPED_TEST(SleepOf, ADropWakesWhatItHits) {
   EXPECT_GT(std::abs(whole), n * s.parameters.particle_mass * 0.01) << "or the bound says nothing";
 }
 
+TYPED_TEST(SleepOf, NobodySleepsAtTheTopOfAThrow) {
+  // |v| stays below the bound on speed for 0.08 s there, ten times as long as sound takes for its 40 smoothing lengths.
+  MOLTEN_FLAVOUR;
+  Scene scene = sleepy_scene(Dim);
+  scene.gravity[Dim - 1] = -10;
+  scene.numerics.sound_speed = 100;
+  scene.numerics.sleep->speed = 0.4;
+  scene.numerics.sleep->after.reset();
+  Start start = start_of(scene, cube<Dim>(2, spacing), spacing);
+  for (auto& v : start.velocity) v[Dim - 1] = 0.5;
+  auto s = state_of<Dim, Real>(scene, start);
+  const double height = by_id(s, position, Dim - 1).at(0);
+  while (s.clock.time < 0.1) {
+    step(s);
+    ASSERT_EQ(s.sleep.asleep, 0) << "at " << s.clock.time << " s";
+  }
+  const double t = s.clock.time;
+  EXPECT_NEAR(by_id(s, position, Dim - 1).at(0), height + 0.5 * t - 5 * t * t, 1e-5);
+}
+
 // ---- heat -----------------------------------------------------------------------------------------------------------
 
 /// A slab at rest, its left half hot.
