@@ -222,6 +222,27 @@ TYPED_TEST(SleepOf, HeatFlowsWhereNothingMoves) {
   EXPECT_NEAR(diagnose(s).heat / diagnose(twin).heat, 1, 1e-4);
 }
 
+TYPED_TEST(SleepOf, HeatAtRestIsConductedAsOftenAsItMust) {
+  MOLTEN_FLAVOUR;
+  Scene scene = conducting_scene(Dim);
+  scene.fluid.heat->diffusivity = 1e-3;
+  auto s = state_of<Dim, Real>(scene, half_hot(scene));
+  const auto n = static_cast<std::int64_t>(s.particles.count());
+  while (s.sleep.asleep < n && s.clock.time < 0.1) step(s);
+  ASSERT_EQ(s.sleep.asleep, n);
+  ASSERT_GT(s.sleep.warm, 0);
+  const double begin = s.clock.time, limit = conduction_limit(s.parameters);
+  int conducted = 0, steps = 0;
+  for (double waited = s.sleep.warm_time; s.clock.time < begin + 5 * limit; waited = s.sleep.warm_time) {
+    step(s);
+    conducted += s.sleep.warm_time < waited;
+    ++steps;
+  }
+  EXPECT_GT(steps, 100) << "or the count says nothing";
+  EXPECT_GE(conducted, 8);
+  EXPECT_LE(conducted, 10) << "every half limit";
+}
+
 TYPED_TEST(SleepOf, WhatMeltsWakes) {
   MOLTEN_FLAVOUR;
   Scene scene = conducting_scene(Dim);
