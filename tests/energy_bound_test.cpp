@@ -119,6 +119,34 @@ TYPED_TEST(EnergyBoundOf, EnergyNeverGrows) {
   }
 }
 
+TYPED_TEST(EnergyBoundOf, ShiftingMovesParticlesBesideTheirVelocity) {
+  MOLTEN_FLAVOUR;
+  const double dt = 1e-3;
+  Scene scene = bounded_scene(Dim, dt);
+  scene.numerics.gradient_correction = true;
+  scene.numerics.shifting = Shifting{};
+  scene.numerics.xsph = Xsph{Xsph::Form::position, 0.3};
+  auto s = pressed<Dim, Real>(scene, 0.02);
+  find_all_rates(s);
+  choose_time_step(s);
+  const auto x = s.particles[position];
+  std::vector<std::array<double, Dim>> before(s.particles.slots());
+  for_each_particle(s.particles, [&](std::size_t k, const auto&) {
+    for (int d = 0; d < Dim; ++d) before[k][d] = x[d][k];
+  });
+  integrate_and_collide(s);
+  double most = 0;
+  for_each_particle(s.particles, [&](std::size_t k, const auto&) {
+    for (int d = 0; d < Dim; ++d) {
+      const double drift = s.particles[shift_velocity][d][k] + 0.3 * s.particles[xsph_velocity][d][k];
+      const double rate = s.particles[velocity][d][k] + drift;
+      EXPECT_NEAR(x[d][k] - before[k][d], dt * rate, 1e-6 * dt);
+      most = std::max(most, std::abs(double(s.particles[shift_velocity][d][k])));
+    }
+  });
+  EXPECT_GT(most, 1e-3) << "m/s, or it shows nothing";
+}
+
 TYPED_TEST(EnergyBoundOf, WithoutTheBoundItWouldGrow) {
   // So that the above is known to see it.
   MOLTEN_FLAVOUR;
