@@ -147,6 +147,16 @@ TYPED_TEST(EnergyBoundOf, ShiftingMovesParticlesBesideTheirVelocity) {
   EXPECT_GT(most, 1e-3) << "m/s, or it shows nothing";
 }
 
+TEST(EnergyShare, OfARunWithoutTheBoundIsOne) {
+  auto s = state_of<2, float>(plain_scene(2), cube<2>(60, 0.1), 0.1);
+  ASSERT_GT(s.particles.slots(), 3000u) << "more than one block";
+  step(s);
+  const Diagnostics d = diagnose(s);
+  EXPECT_EQ(d.least_energy_share, 1);
+  EXPECT_EQ(d.mean_energy_share, 1);
+  EXPECT_EQ(d.largest_energy_share, 1);
+}
+
 TYPED_TEST(EnergyBoundOf, WithoutTheBoundItWouldGrow) {
   // So that the above is known to see it.
   MOLTEN_FLAVOUR;
