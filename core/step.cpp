@@ -26,6 +26,7 @@ template <int Dim, class Real> void step(State<Dim, Real>& s) {
   for (int stage = 1; stage < s.features.stages(); ++stage) {
     go_to_stage(s, stage);
     find_all_rates(s);
+    require_sane(s);
   }
   integrate_and_collide(s);
   s.clock.time = s.clock.limit == Limit::output && s.clock.time + s.clock.dt > s.clock.stop * (1 - 1e-14)
