@@ -1,6 +1,5 @@
 #include "core/boundary/wall_support.h"
 
-#include "core/boundary/wall_integrals.h"
 #include "core/particle_pass.h"
 
 namespace molten {

@@ -8,12 +8,11 @@
 
 #include "core/archive.h"
 #include "core/boundary/contact.h"
+#include "core/boundary/wall_integrals.h"
 #include "core/parameters.h"
 #include "core/particles.h"
 
 namespace molten {
-
-template <int Dim> class WallIntegrals;
 
 template <int Dim> class WallSupport {
  public:
@@ -25,7 +24,7 @@ template <int Dim> class WallSupport {
 
   /// What the cluster may reach: the number of a plane, or one of the two below.
   std::int32_t plane(std::size_t cluster) const { return plane_.empty() ? no_plane : plane_[cluster]; }
-  static constexpr std::int32_t no_plane = -1, many_planes = -2;
+  static constexpr std::int32_t no_plane = WallIntegrals<Dim>::no_plane, many_planes = WallIntegrals<Dim>::many_planes;
 
   const WallIntegrals<Dim>& integrals() const { return *integrals_; }
   const Wall<Dim>& wall(std::int32_t number) const { return walls_[static_cast<std::size_t>(number)]; }
