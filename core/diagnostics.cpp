@@ -46,13 +46,13 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
         if (s.features.internal_energy) d.internal_energy += m * p[internal_energy][0][slot];
         if (s.features.heat) d.heat += m * p[temperature][0][slot];
       },
-      [](Diagnostics& a, const Diagnostics& b) {
+      [&](Diagnostics& a, const Diagnostics& b) {
         a.particles += b.particles;
         a.kinetic_energy += b.kinetic_energy;
         a.potential_energy += b.potential_energy;
         a.internal_energy += b.internal_energy;
         a.least_energy_share = std::min(a.least_energy_share, b.least_energy_share);
-        a.mean_energy_share += b.mean_energy_share;
+        if (share) a.mean_energy_share += b.mean_energy_share;
         a.largest_energy_share = std::max(a.largest_energy_share, b.largest_energy_share);
         a.heat += b.heat;
         for (int k = 0; k < Dim; ++k) {
@@ -65,6 +65,7 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
       });
   if (share) total.mean_energy_share /= static_cast<double>(std::max<std::int64_t>(total.particles, 1));
   total.asleep = s.sleep.asleep;
+  total.energy_taken_by_sleep = s.sleep.taken_energy;
   for (int k = 0; k < 3; ++k)
     if (k >= Dim || total.particles == 0) total.lower[k] = total.upper[k] = 0;
   return total;

@@ -15,6 +15,7 @@ struct Diagnostics {
   std::int64_t particles = 0, asleep = 0;
   double kinetic_energy = 0, potential_energy = 0;  // J (2-D: J per m of depth); potential −m g·x
   double least_energy_share = 1, mean_energy_share = 1, largest_energy_share = 1;  // of energy_bounded_euler
+  double energy_taken_by_sleep = 0;                                                // J, from the start on
   double internal_energy = 0;                                                      // J, from the start on
   double heat = 0;                                                                 // Σ m T, kg K
   std::array<double, 3> momentum{};                                                // kg m/s

@@ -16,7 +16,7 @@ struct Bound {
 
 template <int Dim, class Real> class EnergyBoundedEuler {
  public:
-  explicit EnergyBoundedEuler(State<Dim, Real>& s) : s_(s), p_(s.particles), mover_(s) {}
+  explicit EnergyBoundedEuler(State<Dim, Real>& s) : s_(s), p_(s.particles), drift_(s), mover_(s) {}
 
   /// J/kg that a particle needs of the surplus, or below 0 leaves to it; 0 for padding.
   double excess(std::size_t slot) const { return p_.is_padding(slot) ? 0 : bound(slot).excess(); }
@@ -32,11 +32,8 @@ template <int Dim, class Real> class EnergyBoundedEuler {
       const double g = s_.parameters.gravity[d];
       m.position[d] = position_[d][slot];
       m.velocity[d] = velocity_[d][slot] + dt * (g + share * (acceleration_[d][slot] - g));
-      m.rate[d] = m.velocity[d];
-      if (!s_.features.xsph) continue;
-      const double correction = s_.parameters.xsph * xsph_[d][slot];
-      m.rate[d] += correction;
-      if (s_.parameters.xsph_form == Xsph::Form::velocity) m.velocity[d] += correction;
+      m.rate[d] = drift_.rate(m.velocity[d], d, slot);
+      m.velocity[d] = drift_.overwritten(m.velocity[d], d, slot);
     }
     const Point<Dim> before = m.position;
     mover_.move(slot, m);
@@ -45,7 +42,6 @@ template <int Dim, class Real> class EnergyBoundedEuler {
       velocity_[d][slot] = static_cast<Real>(m.velocity[d]);
     }
     compression_[slot] += static_cast<Real>(dt * compression_rate_[slot]);
-    if (s_.features.internal_energy) internal_energy_[slot] += dt * internal_energy_rate_[slot];
     if (s_.features.heat) temperature_[slot] += dt * temperature_rate_[slot];
     return (m.position - before).squaredNorm();
   }
@@ -65,18 +61,16 @@ template <int Dim, class Real> class EnergyBoundedEuler {
 
   State<Dim, Real>& s_;
   Particles<Dim, Real>& p_;
+  Drift<Dim, Real> drift_;
   Mover<Dim, Real> mover_;
   Column<Position, Dim, double> position_ = p_[position];
   Column<Velocity, Dim, Real> velocity_ = p_[velocity];
   Column<Acceleration, Dim, Real> acceleration_ = p_[acceleration];
-  Column<XsphVelocity, Dim, Real> xsph_ = p_[xsph_velocity];
   Real* compression_ = p_[compression][0];
   Real* share_ = p_[energy_share][0];
   double* temperature_ = p_[temperature][0];
   const Real* compression_rate_ = p_[compression_rate][0];
   const Real* temperature_rate_ = p_[temperature_rate][0];
-  double* internal_energy_ = p_[internal_energy][0];
-  const Real* internal_energy_rate_ = p_[internal_energy_rate][0];
 };
 
 /// The surplus as slots are gone through in order: it grows by what each leaves and falls, to no less than 0, by what

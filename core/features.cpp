@@ -1,49 +1,97 @@
 #include "core/features.h"
 
-#include "core/error.h"
+#include <algorithm>
+
 #include "core/runge_kutta.h"
 
 namespace molten {
 
 namespace {
 
-[[noreturn]] void refuse(const Scene& scene, const std::string& why) {
-  throw Error(ExitCode::usage, scene.file + ": " + why);
-}
-
-void require_sense(const Scene& scene) {
+void require_sensible_fluid(const Scene& scene) {
   const Rheology& r = scene.fluid.rheology;
-  const bool two_jumps = r.model == Rheology::Model::smd && r.jump_number[0] != r.jump_number[1];
+  const bool smd = r.model == Rheology::Model::smd;
   const bool melts = scene.fluid.heat && scene.fluid.heat->melting_range;
-  if (two_jumps && !melts)
-    refuse(scene,
-           "fluid.rheology.jump_number: two values need [fluid.heat] with melting_range; give one value or add them");
-  if (melts && r.model != Rheology::Model::smd)
-    refuse(scene, "fluid.heat.melting_range: only model = \"smd\" melts; choose it or remove the range");
-  if (scene.numerics.particle_sound_speed &&
-      (scene.numerics.state_equation != StateEquation::tait || scene.numerics.gamma != 7))
-    refuse(scene,
-           "numerics.particle_sound_speed: needs state_equation \"tait\" with gamma = 7; use them or leave it out");
-  if (scene.numerics.density_kernel && scene.numerics.density != DensityForm::summation)
-    refuse(scene, "numerics.density_kernel: is that of a density by summation; choose it or leave it out");
-  if (scene.numerics.density_filter && scene.numerics.density == DensityForm::summation)
-    refuse(scene, "numerics.density_filter: a density by summation needs no filter; leave one of the two out");
-  if (scene.numerics.shifting && !scene.numerics.gradient_correction)
-    refuse(scene, "numerics.shifting: needs corrected gradients; add gradient_correction = true to [numerics]");
+  if (smd && r.jump_number[0] != r.jump_number[1] && !melts)
+    refuse(scene, "fluid.rheology.jump_number",
+           "differs between hot and cold, but nothing melts; add melting_range to [fluid.heat] or give one value");
+  if (melts && !smd)
+    refuse(scene, "fluid.heat.melting_range",
+           "acts on the jump_number of model \"smd\" alone; leave it out or use that model");
   if (r.thermal && !scene.fluid.heat)
-    refuse(scene, "fluid.rheology: a viscosity that varies with temperature needs [fluid.heat]; add it");
-  const Numerics& n = scene.numerics;
-  const bool two_step = n.integrator == IntegratorKind::leap_frog || n.integrator == IntegratorKind::symplectic_euler;
-  if (n.sleep && (!two_step || n.density_filter || n.density == DensityForm::summation || n.gradient_correction ||
-                  n.internal_energy))
-    refuse(scene,
-           "numerics.sleep: goes with the integrators leap_frog and symplectic_euler and a density by continuity, "
-           "without density_filter, gradient_correction or internal_energy; leave one of the two out");
-  if (n.sleep && n.sleep->temperature_rate && !scene.fluid.heat)
-    refuse(scene, "numerics.sleep.temperature_rate: this scene has no [fluid.heat]; leave the key out or add heat");
+    refuse(scene, "fluid.rheology", "a viscosity that varies with temperature needs [fluid.heat]; add it");
   for (int d = 0; d < scene.dimensions; ++d)
     if (scene.periodic[d] && !scene.domain)
-      refuse(scene, "scene.periodic: a periodic axis needs scene.domain for its length");
+      refuse(scene, "scene.periodic", "needs the size of the period; add domain = { min, max } to [scene]");
+}
+
+/// A density by summation follows from the places alone.
+void require_sensible_density(const Scene& scene) {
+  const Numerics& n = scene.numerics;
+  if (n.density != DensityForm::summation) {
+    if (n.density_kernel)
+      refuse(scene, "numerics.density_kernel", "is that of density = \"summation\"; add it or leave this out");
+    return;
+  }
+  const auto require_absent = [&](bool there, const char* key, const char* why) {
+    if (there) refuse(scene, key, std::string(why) + " density = \"summation\"; leave one of the two out");
+  };
+  require_absent(n.density_filter.has_value(), "numerics.density_filter", "has nothing to do for");
+  require_absent(n.density_diffusion > 0, "numerics.density_diffusion", "acts on the density's rate, not on");
+  require_absent(n.wall_support, "numerics.wall_support", "makes up for the density's rate at walls, not for");
+  require_absent(scene.fluid.hydrostatic, "fluid.hydrostatic", "sets a density at the start that is lost to");
+}
+
+void require_sensible_numerics(const Scene& scene) {
+  const Numerics& n = scene.numerics;
+  if (n.particle_sound_speed && (n.state_equation != StateEquation::tait || n.gamma != 7))
+    refuse(scene, "numerics.particle_sound_speed",
+           "is that of state_equation \"tait\" with gamma = 7; use them or leave it out");
+  if (n.shifting && !n.gradient_correction)
+    refuse(scene, "numerics.shifting", "needs corrected gradients; add gradient_correction = true to [numerics]");
+  if (n.internal_energy && n.integrator == IntegratorKind::energy_bounded_euler)
+    refuse(scene, "numerics.internal_energy",
+           "takes up the work of whole forces, and energy_bounded_euler lets parts of them act; leave it out or choose "
+           "another integrator");
+}
+
+void require_sensible_sleep(const Scene& scene) {
+  const Numerics& n = scene.numerics;
+  if (!n.sleep) return;
+  const bool two_step = n.integrator == IntegratorKind::leap_frog || n.integrator == IntegratorKind::symplectic_euler;
+  if (!two_step || n.density_filter || n.density == DensityForm::summation || n.gradient_correction ||
+      n.internal_energy)
+    refuse(scene, "numerics.sleep",
+           "goes with the integrators leap_frog and symplectic_euler and a density by continuity, without "
+           "density_filter, gradient_correction or internal_energy; leave one of the two out");
+  if (n.sleep->temperature_rate && !scene.fluid.heat)
+    refuse(scene, "numerics.sleep.temperature_rate", "this scene has no [fluid.heat]; leave the key out or add heat");
+  for (std::size_t k = 0; k < scene.boundaries.size(); ++k)
+    if (scene.boundaries[k].velocity != std::array<double, 3>{})
+      refuse(scene, "boundary." + std::to_string(k) + ".velocity",
+             "a wall in motion keeps the fluid beside it awake; leave it out, or numerics.sleep");
+}
+
+void require_sensible_walls(const Scene& scene) {
+  const Numerics& n = scene.numerics;
+  if (!n.wall_support) return;
+  const bool closes = std::find(scene.periodic.begin(), scene.periodic.end(), true) != scene.periodic.end();
+  for (std::size_t k = 0; closes && k < scene.boundaries.size(); ++k)
+    if (!scene.boundaries[k].shape.plane)
+      refuse(scene, "boundary." + std::to_string(k),
+             "wall support of a wall that is no plane ends at a periodic axis; take planes, or leave scene.periodic or "
+             "numerics.wall_support out");
+}
+
+/// What no rates pass has together.
+void require_one_pass(const Scene& scene, const Features& f) {
+  if (!f.gradient_correction && !f.any_seldom()) return;
+  for (const auto& [there, key] : {std::pair{f.wall_support, "numerics.wall_support"},
+                                   std::pair{f.density_diffusion, "numerics.density_diffusion"}})
+    if (there)
+      refuse(scene, key,
+             "does not go together with gradient_correction or with the methods kept for replication; leave one of the "
+             "two out");
 }
 
 }  // namespace
@@ -69,7 +117,11 @@ const char* name_of(IntegratorKind kind) {
 }
 
 Features features_of(const Scene& scene) {
-  require_sense(scene);
+  require_sensible_fluid(scene);
+  require_sensible_density(scene);
+  require_sensible_numerics(scene);
+  require_sensible_sleep(scene);
+  require_sensible_walls(scene);
   Features f;
   f.heat = scene.fluid.heat.has_value();
   f.stress = !scene.fluid.rheology.constant();
@@ -91,10 +143,7 @@ Features features_of(const Scene& scene) {
   f.density_diffusion = scene.numerics.density_diffusion > 0;
   f.sleep = scene.numerics.sleep.has_value();
   f.integrator = scene.numerics.integrator;
-  if ((f.wall_support || f.density_diffusion) && (f.gradient_correction || f.any_seldom()))
-    refuse(scene, std::string("numerics.") + (f.wall_support ? "wall_support" : "density_diffusion") +
-                      ": does not go together with gradient_correction or with the methods kept for replication; leave "
-                      "one of the two out");
+  require_one_pass(scene, f);
   return f;
 }
 

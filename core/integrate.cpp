@@ -31,6 +31,7 @@ template <int Dim, class Real> class Integrator {
         dt_(s.clock.dt),
         kick_(s.features.integrator == IntegratorKind::leap_frog ? (previous_dt + dt_) / 2 : dt_),
         stretch_(previous_dt > 0 ? dt_ / previous_dt : 0),
+        drift_(s),
         mover_(s) {}
 
   /// Moves the particles of a cluster; returns the square of the longest displacement (m²).
@@ -77,12 +78,8 @@ template <int Dim, class Real> class Integrator {
     for (int d = 0; d < Dim; ++d) {
       m.position[d] = load<cluster_size>(position_[d] + slot);
       m.velocity[d] = read(v[d] + slot) + Wide(kick_) * read(acceleration_[d] + slot);
-      m.rate[d] = m.velocity[d];
-      if (s_.features.shifting) m.rate[d] += read(shift_velocity_[d] + slot);
-      if (!s_.features.xsph) continue;
-      const Wide correction = Wide(s_.parameters.xsph) * read(xsph_[d] + slot);
-      m.rate[d] += correction;
-      if (s_.parameters.xsph_form == Xsph::Form::velocity) m.velocity[d] += correction;
+      m.rate[d] = drift_.rate(m.velocity[d], d, slot);
+      m.velocity[d] = drift_.overwritten(m.velocity[d], d, slot);
     }
     return m;
   }
@@ -119,14 +116,12 @@ template <int Dim, class Real> class Integrator {
   Particles<Dim, Real>& p_;
   double dt_, kick_;
   double stretch_;  // dt over the one before; 0 at the first step
+  Drift<Dim, Real> drift_;
   Mover<Dim, Real> mover_;
-  const std::int64_t* ids_ = p_[id][0];
   Column<Position, Dim, double> position_ = p_[position];
   Column<Velocity, Dim, Real> velocity_ = p_[velocity];
   Column<HalfVelocity, Dim, Real> half_velocity_ = p_[half_velocity];
   Column<Acceleration, Dim, Real> acceleration_ = p_[acceleration];
-  Column<XsphVelocity, Dim, Real> xsph_ = p_[xsph_velocity];
-  Column<ShiftVelocity, Dim, Real> shift_velocity_ = p_[shift_velocity];
   Real* compression_ = p_[compression][0];
   Real* half_compression_ = p_[half_compression][0];
   Real* previous_rate_ = p_[previous_compression_rate][0];

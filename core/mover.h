@@ -1,4 +1,4 @@
-// Moves particles, bouncing them off walls, where walls are near.
+// How particles move: at what rate, and bouncing off walls where walls are near.
 #pragma once
 
 #include <cmath>
@@ -14,6 +14,44 @@ using ClusterLanes = Lanes<double, cluster_size>;
 /// Motion of a cluster's particles.
 template <int Dim> struct ClusterMotion {
   Vec<Dim, ClusterLanes> position, velocity, rate;  // m, m/s, m/s
+};
+
+/// The rate of a particle's place beside its velocity: XSPH and shifting. T: double, or ClusterLanes for a cluster from
+/// its first slot.
+template <int Dim, class Real> class Drift {
+ public:
+  explicit Drift(const State<Dim, Real>& s)
+      : shift_(s.particles[shift_velocity]),
+        xsph_(s.particles[xsph_velocity]),
+        strength_(s.features.xsph ? s.parameters.xsph : 0),
+        overwrites_(s.parameters.xsph_form == Xsph::Form::velocity) {}
+
+  /// From a velocity (m/s) to the rate of the place.
+  template <class T> T rate(T v, int d, std::size_t slot) const {
+    if (shift_[d]) v += read<T>(shift_[d] + slot);
+    return with_xsph(v, d, slot);
+  }
+  /// The velocity with what XSPH adds to it itself, if the scene wants that (m/s).
+  template <class T> T overwritten(T v, int d, std::size_t slot) const {
+    return overwrites_ ? with_xsph(v, d, slot) : v;
+  }
+
+ private:
+  template <class T> T with_xsph(T v, int d, std::size_t slot) const {
+    if (strength_ != 0) v += T(strength_) * read<T>(xsph_[d] + slot);
+    return v;
+  }
+  template <class T> static T read(const Real* from) {
+    if constexpr (std::is_same_v<T, double>)
+      return *from;
+    else
+      return load_double<cluster_size>(from);
+  }
+
+  Column<ShiftVelocity, Dim, Real> shift_;
+  Column<XsphVelocity, Dim, Real> xsph_;
+  double strength_;
+  bool overwrites_;
 };
 
 template <int Dim, class Real> class Mover {

@@ -54,17 +54,48 @@ template <int Dim> Domain<Dim> domain_of(const Scene& scene, const Extent& exten
   return domain;
 }
 
+/// The temperatures that a scene starts with and keeps at its walls.
+struct Temperatures {
+  double low = 1e300, high = -1e300;
+
+  Temperatures(const Scene& scene, const Start& start) {
+    for (const double T : start.temperature) add(T);
+    for (const Boundary& boundary : scene.boundaries)
+      if (boundary.temperature) add(*boundary.temperature);
+  }
+  void add(double T) { low = std::min(low, T), high = std::max(high, T); }
+  double range() const { return std::max(high - low, 0.0); }
+  double largest() const { return high < low ? 0 : std::max(std::abs(low), std::abs(high)); }
+};
+
+/// Thrown up, a particle is slower than the bound for twice speed/|g|, and nothing else about it tells that from rest:
+/// twice that, and as long as sound needs to cross forty smoothing lengths.
+template <int Dim> double rest_time_of(const Scene& scene, const Parameters<Dim>& p, double speed) {
+  double g2 = 0;
+  for (const double g : p.gravity) g2 += g * g;
+  const double turning = g2 > 0 ? 4 * speed / std::sqrt(g2) : 0;
+  const auto& asked = scene.numerics.sleep->after;
+  if (asked && *asked < turning)
+    refuse(scene, "numerics.sleep.after",
+           std::to_string(*asked) +
+               " s is too short to tell rest from the top of a throw; give at least 4 speed/|g|, " +
+               std::to_string(turning) + " s, or lower numerics.sleep.speed");
+  return asked.value_or(std::max(40 * p.smoothing_length / p.eos.sound_speed, turning));
+}
+
 /// A thousandth of the sound speed, so a hundredth of the fastest flow; the density rate of a particle that moves so
 /// against its neighbours; a thousandth of the temperatures' range in the time that heat takes to cross a smoothing
-/// length. Held for as long as sound needs to cross forty smoothing lengths.
-template <int Dim> RestBounds rest_bounds(const SleepBounds& scene, const Parameters<Dim>& p, double hot_to_cold) {
+/// length; a hundredth of that range, and more than what rounds away in single precision.
+template <int Dim>
+RestBounds rest_bounds(const Scene& scene, const Parameters<Dim>& p, const Temperatures& temperatures) {
+  const SleepBounds& asked = *scene.numerics.sleep;
   RestBounds r;
-  const double h = p.smoothing_length, sound = p.eos.sound_speed;
-  r.speed = scene.speed.value_or(1e-3 * sound);
-  r.density_rate = scene.density_rate.value_or(r.speed / h);
-  r.temperature_rate = scene.temperature_rate.value_or(1e-3 * hot_to_cold * p.diffusivity / (h * h));
-  r.temperature = scene.temperature.value_or(0.01 * hot_to_cold);
-  r.after = scene.after.value_or(40 * h / sound);
+  const double h = p.smoothing_length;
+  r.speed = asked.speed.value_or(1e-3 * p.eos.sound_speed);
+  r.density_rate = asked.density_rate.value_or(r.speed / h);
+  r.temperature_rate = asked.temperature_rate.value_or(1e-3 * temperatures.range() * p.diffusivity / (h * h));
+  r.temperature = std::max(asked.temperature.value_or(0.01 * temperatures.range()), 1e-6 * temperatures.largest());
+  r.after = rest_time_of(scene, p, r.speed);
   return r;
 }
 
@@ -92,7 +123,6 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.viscosity = r.viscosity;
   p.rheology = r;
   if (r.model == Rheology::Model::smd) p.smd = Smd(r.flow_index, r.yield_stress, r.consistency, r.jump_number);
-  double hot_to_cold = 0;  // K
   if (scene.fluid.heat) {
     p.diffusivity = scene.fluid.heat->diffusivity;
     if (scene.fluid.heat->melting_range) {
@@ -101,7 +131,6 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
     }
     const auto [low, high] = std::minmax_element(start.temperature.begin(), start.temperature.end());
     p.reference_temperature = (*low + *high) / 2;
-    hot_to_cold = *high - *low;
   }
   p.artificial_viscosity = n.artificial_viscosity;
   p.density_diffusion = n.density_diffusion;
@@ -117,7 +146,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.courant_conduction = n.courant_conduction;
   p.fixed_dt = n.fixed_dt;
   p.sort_each_step = n.resort == Resort::each_step;
-  if (n.sleep) p.rest = rest_bounds(*n.sleep, p, hot_to_cold);
+  if (n.sleep) p.rest = rest_bounds(scene, p, Temperatures(scene, start));
   p.domain = domain_of<Dim>(scene, extent, start.spacing);
   return p;
 }

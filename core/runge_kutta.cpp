@@ -60,6 +60,7 @@ template <int Dim, class Real> class Stages {
         now_(place(p_, position, velocity, compression, temperature)),
         base_(place(p_, base_position, base_velocity, base_compression, base_temperature)),
         slope_(place(p_, position_slope, velocity_slope, compression_slope, temperature_slope)),
+        drift_(s),
         mover_(s) {}
 
   /// Takes one particle to a stage; returns the square of its way (m²).
@@ -90,7 +91,7 @@ template <int Dim, class Real> class Stages {
       m.rate[d] = rates.position[d];
     }
     after.add(s_.clock.dt, rates);
-    for (int d = 0; d < Dim; ++d) m.velocity[d] = after.velocity[d] + overwritten(d, slot);
+    for (int d = 0; d < Dim; ++d) m.velocity[d] = drift_.overwritten(after.velocity[d], d, slot);
     mover_.move(slot, m);
     for (int d = 0; d < Dim; ++d) after.position[d] = m.position[d], after.velocity[d] = m.velocity[d];
     now_.set(slot, after);
@@ -101,20 +102,12 @@ template <int Dim, class Real> class Stages {
   Quantities<Dim> rates_at(std::size_t slot) const {
     Quantities<Dim> r;
     for (int d = 0; d < Dim; ++d) {
-      r.position[d] = now_.velocity[d][slot];
+      r.position[d] = drift_.rate(double(now_.velocity[d][slot]), d, slot);
       r.velocity[d] = acceleration_[d][slot];
-      if (s_.features.xsph) r.position[d] += s_.parameters.xsph * xsph_[d][slot];
-      if (s_.features.shifting) r.position[d] += shift_velocity_[d][slot];
     }
     r.compression = compression_rate_[slot];
     if (s_.features.heat) r.temperature = temperature_rate_[slot];
     return r;
-  }
-
-  /// What XSPH adds to the velocity itself, if the scene wants that (m/s).
-  double overwritten(int d, std::size_t slot) const {
-    const bool does = s_.features.xsph && s_.parameters.xsph_form == Xsph::Form::velocity;
-    return does ? s_.parameters.xsph * xsph_[d][slot] : 0;
   }
 
   void add_to_slope(int stage, std::size_t slot, const Quantities<Dim>& rates) const {
@@ -138,10 +131,9 @@ template <int Dim, class Real> class Stages {
   Particles<Dim, Real>& p_;
   Tableau tableau_;
   Place<Dim, Real> now_, base_, slope_;
+  Drift<Dim, Real> drift_;
   Mover<Dim, Real> mover_;
   Column<Acceleration, Dim, Real> acceleration_ = p_[acceleration];
-  Column<XsphVelocity, Dim, Real> xsph_ = p_[xsph_velocity];
-  Column<ShiftVelocity, Dim, Real> shift_velocity_ = p_[shift_velocity];
   const Real* compression_rate_ = p_[compression_rate][0];
   const Real* temperature_rate_ = p_[temperature_rate][0];
   double* internal_energy_ = p_[internal_energy][0];

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -227,7 +228,8 @@ struct Output {
 };
 
 struct Scene {
-  std::string title, file, text;  // text: the file as read (after --set), stored with the run
+  std::string title, file, text;                     // text: the file as read (after --set), stored with the run
+  std::map<std::string, Place, std::less<>> places;  // of its keys by their full names, such as "boundary.0.slip"
   int dimensions = 3;
   std::array<double, 3> gravity{0, 0, -9.81};  // m/s²; 2-D: x, y
   std::array<bool, 3> periodic{};              // per axis; needs the domain
@@ -238,5 +240,11 @@ struct Scene {
   Run run;
   Output output;
 };
+
+/// "file:line:column", or the file alone.
+std::string text_of(const Place& place);
+
+/// Throws Error(usage): one line with where the key, or the table that it would be in, stands, the key, and why.
+[[noreturn]] void refuse(const Scene& scene, const std::string& key, const std::string& why);
 
 }  // namespace molten

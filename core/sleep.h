@@ -1,7 +1,7 @@
 // Sleep: regions where nothing moves or changes cost nothing. A particle is at rest once its speed and its rate of
 // density have stayed within bounds for a while, and its heat is at rest once its rate of temperature has. Cells of
 // about the list's reach are active if they, or cells next to them, hold a particle that is not at rest. Of the others,
-// those that so have heat that is not at rest are warm: only heat is conducted there, a few steps at a time. The rest
+// those that so have heat that is not at rest are warm: only heat is conducted there, as seldom as is stable. The rest
 // are asleep: they keep their places in the sums of others, with velocity and rates zero; nothing is summed for them,
 // and they are neither moved nor sorted.
 //
@@ -10,7 +10,7 @@
 // it, which wakes it. Falling asleep takes at most ½ m v² of energy and m v of momentum from it, v being the bound on
 // speed; its mean acceleration over the time at rest was below 2 v over that time. Where the viscosity varies, a warm
 // particle wakes once its temperature has changed by a bound since it was last active. Heat is conserved between active
-// and warm particles but for what temperatures change in a few steps; one asleep is denied heat at about the bound on
+// and warm particles but for what temperatures change meanwhile; one asleep is denied heat at about the bound on
 // the rate of temperature, since what would heat it faster first heats those around it.
 #pragma once
 

@@ -12,6 +12,12 @@ namespace molten {
 
 namespace {
 
+/// For the passes of viscosity and of forces.
+template <int Dim, class Real> void find_wall_patches(State<Dim, Real>& s) {
+  const auto scope = s.timer.scope("viscosity");
+  s.wall_support.find_patches(s.particles, s.neighbours.first_slot(Block::active));
+}
+
 bool is_multiple(std::int64_t step, std::int64_t every) { return step > 0 && step % every == 0; }
 
 }  // namespace
@@ -26,6 +32,7 @@ template <int Dim, class Real> void step(State<Dim, Real>& s) {
   for (int stage = 1; stage < s.features.stages(); ++stage) {
     go_to_stage(s, stage);
     find_all_rates(s);
+    require_sane(s);
   }
   integrate_and_collide(s);
   s.clock.time = s.clock.limit == Limit::output && s.clock.time + s.clock.dt > s.clock.stop * (1 - 1e-14)
@@ -42,8 +49,11 @@ template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s) {
   list_if_due(s);
   if (s.features.density_sum) sum_density(s);
   if (s.features.gradient_correction) find_corrections(s);
+  const bool twice_at_walls = s.features.stress && s.features.wall_support;
+  if (twice_at_walls) find_wall_patches(s);
   if (s.features.stress) find_viscosity(s);
   find_rates(s);
+  if (twice_at_walls) s.wall_support.forget_patches();
 }
 
 template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s) {

@@ -36,7 +36,7 @@ template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s);
 template <int Dim, class Real> void find_rates(State<Dim, Real>& s);
 
 /// Throws Error(diverged), naming the particle, the field and the likely cause, if the rates are not finite or the run
-/// blew up. The state is still that before the step.
+/// blew up. The state is still that before the step, or at a stage of it.
 template <int Dim, class Real> void require_sane(const State<Dim, Real>& s);
 
 /// The largest stable time step and what limits it (physics: [P] 6-17 with a coefficient for each limit).

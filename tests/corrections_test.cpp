@@ -28,10 +28,7 @@ using Flow = std::function<X(const X&)>;
 /// A free jittered block with a velocity, found corrections.
 template <int Dim, class Real> State<Dim, Real> block(const Scene& scene, const Flow& flow) {
   auto s = state_of<Dim, Real>(scene, cube<Dim>(Dim == 2 ? 16 : 9, spacing, 0.2), spacing);
-  for_each_particle(s.particles, [&](std::size_t k, const auto& x) {
-    const auto v = flow(x);
-    for (int d = 0; d < Dim; ++d) s.particles[velocity][d][k] = Real(v[d]);
-  });
+  set_velocity(s, flow);
   find_corrections(s);
   return s;
 }

@@ -40,9 +40,7 @@ template <int Dim, class Real> std::vector<std::array<double, 2>> naive_sums(con
     sums[i][0] += mW;
     sums[i][1] += mW / (1 + s.particles[compression][0][j]);
   };
-  const Parameters<Dim>& q = s.parameters;
-  const double own = with_kernel<double>(q.kernel, Dim, q.smoothing_length, q.particle_mass,
-                                         [](const auto& k) { return k(Lanes<double, 1>(0.0)).w.v; });
+  const double own = kernel_at(s.parameters, 0).mW;
   for_each_particle(s.particles, [&](std::size_t k, const auto&) { add(k, k, own); });
   for_each_pair(s, [&](const NaivePair& p) { add(p.i, p.j, p.mW); });
   return sums;

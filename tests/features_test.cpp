@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
 #include <string>
 
 #include "core/error.h"
@@ -188,28 +189,74 @@ void expect_refused(const std::function<void(Scene&)>& edit, const std::string& 
 
 TEST(Features, RefusesWhatMakesNoSense) {
   const auto two_jumps = [](Scene& s) { s.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 150}, 60, 20}; };
-  const std::string jumps = "fluid.rheology.jump_number: two values need [fluid.heat] with melting_range";
+  const std::string jumps = "fluid.rheology.jump_number: differs between hot and cold, but nothing melts";
   expect_refused(two_jumps, jumps);
   expect_refused([&](Scene& s) { two_jumps(s), s.fluid.heat = Heat{}; }, jumps);
   expect_refused(
       [](Scene& s) {
         s.fluid.heat = Heat{1e-4, std::array<double, 2>{40, 60}, 20, 90};
       },
-      "fluid.heat.melting_range: only model = \"smd\" melts");
+      "fluid.heat.melting_range: acts on the jump_number of model \"smd\" alone");
   expect_refused(
       [](Scene& s) {
         s.numerics.density_filter = DensityFilter{};
         s.numerics.density = DensityForm::summation;
       },
-      "numerics.density_filter: a density by summation needs no filter");
+      "numerics.density_filter: has nothing to do for density = \"summation\"");
   expect_refused([](Scene& s) { s.numerics.shifting = Shifting{}; }, "numerics.shifting: needs corrected gradients");
   expect_refused(
       [](Scene& s) {
         s.periodic = {true, false, false};
       },
-      "scene.periodic: a periodic axis needs scene.domain");
+      "scene.periodic: needs the size of the period; add domain");
   expect_refused([](Scene& s) { s.numerics.sleep.emplace().temperature_rate = 1; },
                  "numerics.sleep.temperature_rate: ");
+}
+
+TEST(Features, RefusesADensityBySummationWithWhatActsOnItsRate) {
+  const auto summed = [](Scene& s) { s.numerics.density = DensityForm::summation; };
+  expect_refused([&](Scene& s) { summed(s), s.numerics.wall_support = true; }, "numerics.wall_support: ");
+  expect_refused([&](Scene& s) { summed(s), s.numerics.density_diffusion = 0.1; }, "numerics.density_diffusion: ");
+  expect_refused([&](Scene& s) { summed(s), s.fluid.hydrostatic = true; }, "fluid.hydrostatic: ");
+  expect_refused([](Scene& s) { s.numerics.density_kernel = KernelKind::poly6; }, "numerics.density_kernel: ");
+}
+
+TEST(Features, RefusesWallsThatItWouldGetWrong) {
+  const auto walls = [](Scene& s) {
+    s.numerics.wall_support = true;
+    s.domain = Box{{0, 0, 0}, {1, 1, 1}};
+    s.boundaries.resize(2);
+    s.boundaries[0].shape.plane.emplace();
+    s.boundaries[1].shape.plane.emplace();
+  };
+  const auto with_sphere = [&](Scene& s) {
+    walls(s);
+    s.boundaries[1].shape.plane.reset();
+    s.boundaries[1].shape.sphere.emplace();
+  };
+  EXPECT_EQ(refusal([&](Scene& s) { walls(s), s.periodic[0] = true; }), "");
+  EXPECT_EQ(refusal(with_sphere), "");
+  expect_refused([&](Scene& s) { with_sphere(s), s.periodic[0] = true; }, "boundary.1: wall support of a wall that is");
+  const auto moving = [&](Scene& s) { walls(s), s.boundaries[1].velocity = {1, 0, 0}; };
+  EXPECT_EQ(refusal(moving), "");
+  expect_refused([&](Scene& s) { moving(s), s.numerics.sleep.emplace(); }, "boundary.1.velocity: a wall in motion");
+}
+
+TEST(Features, RefusesInternalEnergyOfForcesThatActInPart) {
+  const auto bounded = [](Scene& s) { s.numerics.integrator = IntegratorKind::energy_bounded_euler; };
+  EXPECT_EQ(refusal(bounded), "");
+  expect_refused([&](Scene& s) { bounded(s), s.numerics.internal_energy = true; }, "numerics.internal_energy: ");
+}
+
+TEST(Features, ARefusalSaysWhereTheKeyOrItsTableStands) {
+  const auto shifting = [](Scene& s) { s.numerics.shifting = Shifting{}; };
+  const auto line = [&](std::map<std::string, Place, std::less<>> places) {
+    return refusal([&](Scene& s) { shifting(s), s.places = places; }).substr(0, 33);
+  };
+  const Place place{"bad.toml", 7, 3};
+  EXPECT_EQ(line({{"numerics.shifting", place}}), "bad.toml:7:3: numerics.shifting: ");
+  EXPECT_EQ(line({{"numerics", place}}), "bad.toml:7:3: numerics.shifting: ");
+  EXPECT_EQ(line({{"numerics.shifting", {"--set numerics.shifting=true", 0, 0}}}), "--set numerics.shifting=true: num");
 }
 
 TEST(Features, TakesWhatMakesSense) {

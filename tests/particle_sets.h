@@ -88,6 +88,24 @@ template <int Dim, class Real, class F> void for_each_particle(const Particles<D
   }
 }
 
+/// Gives every particle the velocity (m/s) of its place.
+template <int Dim, class Real, class F> void set_velocity(State<Dim, Real>& s, F&& of) {
+  for_each_particle(s.particles, [&](std::size_t k, const std::array<double, 3>& x) {
+    const std::array<double, 3> v = of(x);
+    for (int d = 0; d < Dim; ++d) s.particles[velocity][d][k] = Real(v[d]);
+  });
+}
+
+/// m W and m W'/r of the run's kernel at a distance (m).
+struct KernelValue {
+  double mW, mF;
+};
+template <int Dim> KernelValue kernel_at(const Parameters<Dim>& p, double r) {
+  const auto kernel = with_kernel<double>(p.kernel, Dim, p.smoothing_length, p.particle_mass,
+                                          [&](const auto& k) { return k(Lanes<double, 1>(r)); });
+  return {kernel.w.v, kernel.slope.v};
+}
+
 /// A pair by brute force, in double and from the true positions: mW = m_j W, mF = m_j W'(r)/r.
 struct NaivePair {
   std::size_t i, j;
@@ -108,10 +126,9 @@ template <int Dim, class Real, class F> void for_each_pair(const State<Dim, Real
       }
       p.r = std::hypot(p.x[0], p.x[1], p.x[2]);
       if (i == j || p.r >= q.support_radius) return;
-      const auto kernel = with_kernel<double>(q.kernel, Dim, q.smoothing_length, q.particle_mass,
-                                              [&](const auto& k) { return k(Lanes<double, 1>(p.r)); });
-      p.mW = kernel.w.v;
-      p.mF = kernel.slope.v;
+      const KernelValue kernel = kernel_at(q, p.r);
+      p.mW = kernel.mW;
+      p.mF = kernel.mF;
       f(p);
     });
   });

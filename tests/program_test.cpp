@@ -107,6 +107,27 @@ TEST_F(Commands, RunLeavesItsFiles) {
   EXPECT_TRUE(read_bytes(out / "series.csv").starts_with("time_s,step,dt_s,limit,"));
 }
 
+TEST_F(Commands, SeriesAndSummaryHaveWhatTheRunHas) {
+  const auto header = [&] {
+    const std::string series = read_bytes(out / "series.csv");
+    return series.substr(0, series.find('\n'));
+  };
+  ASSERT_EQ(run(block_scene, {"--set", "run.max_steps=3"}).code, 0);
+  EXPECT_TRUE(header().ends_with(",max_compression"));
+  EXPECT_FALSE(json_of(out / "summary.json").contains("energy_taken_by_sleep_J"));
+  ASSERT_EQ(run(block_scene, {"--overwrite", "--set", "run.max_steps=3", "--set", "numerics.sleep={}"}).code, 0);
+  EXPECT_TRUE(header().ends_with(",max_compression,asleep,energy_taken_by_sleep_J"));
+  EXPECT_EQ(json_of(out / "summary.json")["energy_taken_by_sleep_J"], 0);
+  ASSERT_EQ(
+      run(block_scene, {"--overwrite", "--set", "run.max_steps=3", "--set", "numerics.integrator=energy_bounded_euler"})
+          .code,
+      0);
+  EXPECT_TRUE(header().ends_with(",least_energy_share,mean_energy_share,largest_energy_share"));
+  const std::string series = read_bytes(out / "series.csv");
+  EXPECT_EQ(std::count(series.begin(), series.end(), ','), 21 * std::count(series.begin(), series.end(), '\n'))
+      << "as many fields in every row";
+}
+
 TEST_F(Commands, SummaryHasItsKeys) {
   ASSERT_EQ(run(block_scene, {"--threads", "2", "--set", "run.max_steps=20"}).code, 0);
   const auto summary = json_of(out / "summary.json");

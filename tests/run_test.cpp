@@ -244,7 +244,19 @@ TEST(ResumeFallsBack, ToTheCheckpointBeforeADamagedOneAndSaysSo) {
 TEST(ResumeFallsBack, OntoNothingWhenAllAreDamaged) {
   const Finished bench;
   for (const fs::path& file : list_checkpoints(bench.run("a"))) damage(file);
-  EXPECT_EQ(bench.resume("a").code, 6);
+  expect_refused(bench.resume("a"), 6, {list_checkpoints(bench.run("a")).at(0).string(), "checksum"});
+}
+
+TEST(ResumeRefuses, CheckpointsOfAnotherFormat) {
+  const Finished bench;
+  for (const fs::path& file : list_checkpoints(bench.run("a"))) {
+    std::string bytes = read_bytes(file);
+    const std::string mark = "molten checkpoint, format ";
+    ASSERT_TRUE(bytes.starts_with(mark + "2\n"));
+    bytes[mark.size()] = '1';
+    write_bytes(file, bytes);
+  }
+  expect_refused(bench.resume("a"), 6, {"is of format 1", "reads format 2", "run the scene anew"});
 }
 
 TEST(ResumeRefuses, AFolderWithoutCheckpoints) {
@@ -256,8 +268,9 @@ TEST(ResumeRefuses, AFolderWithoutCheckpoints) {
 
 TEST(ResumeRefuses, AChangedSceneUnlessForced) {
   const Finished bench;
-  for (const char* change : {"fluid.density=1001.0", "fluid.rheology.viscosity=6.0", "scene.gravity=[0.0, -9.0]",
-                             "numerics.precision=double", "boundary.0.slip=0.5", "fluid.spacing=0.021"})
+  for (const char* change :
+       {"fluid.density=1001.0", "fluid.rheology.viscosity=6.0", "scene.gravity=[0.0, -9.0]",
+        "numerics.precision=double", "boundary.0.slip=0.5", "fluid.spacing=0.021", "numerics.tensile_correction=true"})
     expect_refused(bench.resume("a", {"--set", change}), 6, {"--force", "changed"});
   EXPECT_TRUE(contains(read_bytes(bench.run("a") / "scene.toml"), "viscosity = 5.0"));
   const Outcome forced =

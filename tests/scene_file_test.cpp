@@ -56,6 +56,7 @@ TEST(SceneFile, WallsWithSupport) {
       "slip = 0.5\nvelocity = [0.1, 0, 0]\ntemperature = 30\n"
       "ground = { diffusivity = 1e-6, thickness = 0.2 }";
   std::string text = replaced(good, "slip = 0.5", keys);
+  text = replaced(text, "periodic = [\"x\"]\n", "");
   text = replaced(text, "[numerics]", "[numerics]\nwall_support = true\ndensity_diffusion = 0.1");
   const Scene scene = parse_scene(replaced(text, "density = 1200.0", "density = 1200.0\nhydrostatic = true"), "s.toml");
   EXPECT_TRUE(scene.fluid.hydrostatic);
@@ -104,6 +105,9 @@ TEST(SceneFile, DensityAndStateEquation) {
   EXPECT_EQ(numerics("density_filter = { kind = \"mls\" }").density_filter->kind, DensityFilter::Kind::mls);
   EXPECT_FALSE(numerics("density_filter = false").density_filter);
   EXPECT_EQ(numerics("state_equation = \"ideal_gas\"\nstiffness = 3").stiffness, 3);
+  const Numerics queiroz = numerics("preset = \"queiroz\"\ndensity = \"continuity\"");
+  EXPECT_FALSE(queiroz.density_kernel) << "goes with the summation of the preset";
+  EXPECT_EQ(numerics("preset = \"queiroz\"").density_kernel, KernelKind::poly6);
   EXPECT_EQ(numerics("integrator = \"runge_kutta_4\"").integrator, IntegratorKind::runge_kutta_4);
 }
 

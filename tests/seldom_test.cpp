@@ -67,9 +67,7 @@ TYPED_TEST(SeldomOf, TensileCorrectionIsMonaghans) {
   Scene with = plain_scene(Dim);
   with.numerics.tensile_correction = true;
   const double difference = worst_difference<Dim, Real>(with, plain_scene(Dim), [](const auto& s, const NaivePair& p) {
-    const auto& q = s.parameters;
-    const double at_spacing = with_kernel<double>(q.kernel, Dim, q.smoothing_length, q.particle_mass,
-                                                  [&](const auto& k) { return k(Lanes<double, 1>(q.spacing)).w.v; });
+    const double at_spacing = kernel_at(s.parameters, spacing).mW;
     double R = 0;
     for (const std::size_t k : {p.i, p.j}) {
       const double term = s.particles[pressure_term][0][k];

@@ -2,18 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "bench/study/cavity_flow.h"
 #include "bench/study/channel_profile.h"
 #include "bench/study/dam_break.h"
 #include "bench/study/ellipse.h"
 #include "bench/study/particles.h"
-#include "bench/study/reference.h"
 #include "bench/study/request.h"
 #include "bench/study/wave_fit.h"
-#include "core/error.h"
-#include "tests/temp_folder.h"
 
 namespace molten::study {
 namespace {
@@ -182,39 +178,6 @@ TEST(StudyExact, WaveFitFindsFrequencyAndDecay) {
   const WaveFit fit = fit_wave(energy, 1.769, 0.158);
   EXPECT_NEAR(fit.frequency, 1.75, 1e-9);
   EXPECT_NEAR(fit.decay, 0.17, 1e-9);
-}
-
-// ---- references -----------------------------------------------------------------------------------------------------
-
-/// MOLTEN_REFERENCE as this test wants it.
-class ReferenceFolder {
- public:
-  explicit ReferenceFolder(const char* folder) {
-    if (const char* before = std::getenv("MOLTEN_REFERENCE")) before_ = before;
-    folder ? setenv("MOLTEN_REFERENCE", folder, 1) : unsetenv("MOLTEN_REFERENCE");
-  }
-  ~ReferenceFolder() {
-    before_.empty() ? unsetenv("MOLTEN_REFERENCE") : setenv("MOLTEN_REFERENCE", before_.c_str(), 1);
-  }
-
- private:
-  std::string before_;
-};
-
-TEST(StudyReference, ReadsTwoColumnsByNameAndSkipsWhatIsNotThere) {
-  const TempFolder folder;
-  write_bytes(folder.path() / "a.csv", "# a comment\nT,other,Z\n0,9,1\n# more\n1,9,2.5\r\n");
-  write_bytes(folder.path() / "short.csv", "T,Z\n0\n");
-  const ReferenceFolder set(folder.path().c_str());
-  const auto s = reference("a.csv", "T", "Z");
-  ASSERT_TRUE(s);
-  EXPECT_EQ(s->at, (std::vector<double>{0, 1}));
-  EXPECT_EQ(s->value, (std::vector<double>{1, 2.5}));
-  EXPECT_FALSE(reference("none.csv", "T", "Z"));
-  EXPECT_THROW(reference("a.csv", "T", "Q"), Error);
-  EXPECT_THROW(reference("short.csv", "T", "Z"), Error);
-  const ReferenceFolder unset(nullptr);
-  EXPECT_FALSE(reference("a.csv", "T", "Z"));
 }
 
 // ---- the cases ------------------------------------------------------------------------------------------------------

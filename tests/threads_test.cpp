@@ -1,10 +1,10 @@
 // The same bits for any number of threads: the rates, and runs of whole steps with walls, heat and changing viscosity.
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <cstring>
 
 #include "tests/particle_sets.h"
+#include "tests/with_threads.h"
 
 namespace molten {
 namespace {
@@ -80,11 +80,9 @@ template <int Dim, class Real> State<Dim, Real> start_run(const Scene& scene) {
 }
 
 template <int Dim, class Real> std::vector<unsigned char> bits_after(const Scene& scene, int threads, int steps) {
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(threads);
+  const WithThreads set(threads);
   auto s = start_run<Dim, Real>(scene);
   for (int k = 0; k < steps; ++k) step(s);
-  omp_set_num_threads(before);
   return bits_of(s);
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/diagnostics.h"
+#include "core/error.h"
 #include "core/runge_kutta.h"
 #include "tests/particle_sets.h"
 
@@ -262,6 +263,31 @@ TEST(TimeStep, RungeKuttaMethodsFallOnTheParabola) {
     auto s = falling<double>(integrator, 0.01);
     for (int k = 0; k < 100; ++k) step(s);
     EXPECT_NEAR(height_error(s), 0, 1e-12) << name_of(integrator);
+  }
+}
+
+// ---- runs that blow up ----------------------------------------------------------------------------------------------
+
+TEST(TimeStep, AStageThatBlowsUpIsCaughtAtOnce) {
+  // Half a step presses the lattice until the pressure is beyond the numbers.
+  for (const auto integrator : {IntegratorKind::midpoint, IntegratorKind::runge_kutta_4}) {
+    Scene scene = plain_scene(2);
+    scene.numerics.integrator = integrator;
+    scene.numerics.fixed_dt = 1e10;
+    scene.numerics.gamma = 50;
+    scene.domain = Box{{-1e12, -1e12, 0}, {1e12, 1e12, 0}};
+    Start start = start_of(scene, cube<2>(8, spacing), spacing);
+    for (std::size_t k = 0; k < start.position.size(); ++k)
+      for (int d = 0; d < 2; ++d) start.velocity[k][d] = -1e-3 * (start.position[k][d] - 4 * spacing);
+    auto s = state_of<2, float>(scene, start);
+    try {
+      step(s);
+      ADD_FAILURE() << "taken by " << name_of(integrator);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ExitCode::diverged);
+      EXPECT_NE(std::string(e.what()).find("particle "), std::string::npos) << e.what();
+      EXPECT_EQ(s.clock.step, 0);
+    }
   }
 }
 

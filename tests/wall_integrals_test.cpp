@@ -8,6 +8,7 @@
 
 #include "core/boundary/shapes.h"
 #include "core/kernel.h"
+#include "tests/particle_sets.h"
 
 namespace molten {
 namespace {
@@ -190,6 +191,58 @@ TEST(WallIntegrals, EveryKernel) {
       for (double d = 0.205; d < radial.reach(); d += 0.01) hidden += 0.01 * radial.plane_weight(d);
       EXPECT_NEAR(radial.plane_hidden(0.2), hidden, 2e-3) << static_cast<int>(kind) << ' ' << dim;
     }
+}
+
+// ---- the pieces found once a step -----------------------------------------------------------------------------------
+
+template <class Real> State<2, Real> in_a_corner() {
+  using namespace particle_sets;
+  Scene scene = plain_scene(2);
+  scene.numerics.wall_support = true;
+  scene.fluid.rheology = {Rheology::Model::smd, 0, 0.5, {15, 15}, 60, 20};
+  scene.boundaries.emplace_back().shape.plane.emplace();  // stands for the walls below
+  std::vector<Wall<2>> walls(2);
+  walls[0].vertices = {{0, 0}, {2, 0}}, walls[0].facets = {{0, 1}};
+  walls[1].vertices = {{0, 2}, {0, 0}}, walls[1].facets = {{0, 1}};
+  const Start start = start_of(scene, cube<2>(12, 0.1, 0.2), 0.1);
+  const auto p = parameters_of<2>(scene, start);
+  return make_state<2, Real>(features_of(scene), p, Contact<2>(walls, p.contact_radius, p.support_radius), start);
+}
+
+template <int Dim, class Real> std::vector<double> weights(const State<Dim, Real>& s, std::size_t slot) {
+  std::vector<double> all;
+  const Point<Dim> x(s.particles[position][0][slot], s.particles[position][1][slot]);
+  s.wall_support.visit(slot, x, [&](const auto& patch) { all.push_back(patch.weight), all.push_back(patch.hidden); });
+  return all;
+}
+
+TEST(WallPatches, FoundOnceAreThoseFoundEveryTime) {
+  auto s = in_a_corner<float>();
+  const auto of_all = [&] {
+    std::vector<std::vector<double>> all;
+    for (std::size_t slot = 0; slot < s.particles.slots(); ++slot)
+      if (s.wall_support.plane(slot / cluster_size) == WallSupport<2>::many_planes && !s.particles.is_padding(slot))
+        all.push_back(weights(s, slot));
+    return all;
+  };
+  const auto every_time = of_all();
+  ASSERT_GT(every_time.size(), 10u);
+  s.wall_support.find_patches(s.particles, 0);
+  EXPECT_EQ(of_all(), every_time);
+  s.particles[position][0][0] += 0.01;
+  EXPECT_EQ(of_all(), every_time) << "kept";
+  s.wall_support.forget_patches();
+  EXPECT_NE(of_all(), every_time) << "forgotten";
+}
+
+TEST(WallPatches, GiveTheSameBits) {
+  auto once = in_a_corner<float>(), twice = in_a_corner<float>();
+  find_all_rates(once);
+  find_viscosity(twice), find_rates(twice);
+  for (int d = 0; d < 2; ++d)
+    for (std::size_t slot = 0; slot < once.particles.slots(); ++slot)
+      EXPECT_EQ(once.particles[acceleration][d][slot], twice.particles[acceleration][d][slot]);
+  EXPECT_EQ(weights(once, 0), weights(twice, 0)) << "forgotten after the step's passes";
 }
 
 }  // namespace

@@ -66,7 +66,6 @@ template <int Dim> class WallIntegrals {
   WallIntegrals(const std::vector<Wall<Dim>>& walls, const WallSurface<Dim>& surface, KernelKind kernel,
                 double smoothing_length);
 
-  bool empty() const { return sheets_.empty(); }
   double reach() const { return radial_.reach(); }
 
   /// Calls visit(patch) for each plane that has facets in the support of x.

@@ -1,6 +1,5 @@
 #include "core/boundary/wall_support.h"
 
-#include "core/boundary/wall_integrals.h"
 #include "core/particle_pass.h"
 
 namespace molten {
@@ -32,15 +31,44 @@ void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t f
   });
 }
 
+template <int Dim>
+template <class Real>
+void WallSupport<Dim>::find_patches(const Particles<Dim, Real>& particles, std::size_t first_slot) {
+  patches_.resize(plane_.size());
+  const auto x = particles[position];
+  const std::size_t first = first_slot / cluster_size;
+  for_each_piece(plane_.size() - first, [&](std::size_t n) {
+    const std::size_t c = first + n;
+    Patches& patches = patches_[c];
+    patches.begin.fill(0);
+    patches.all.clear();
+    if (plane_[c] != many_planes) return;
+    for (std::size_t k = 0; k < cluster_size; ++k) {
+      const std::size_t slot = c * cluster_size + k;
+      Point<Dim> point;
+      for (int d = 0; d < Dim; ++d) point[d] = x[d][slot];
+      if (!particles.is_padding(slot))
+        integrals_->visit(point, [&](const WallPatch<Dim>& patch) { patches.all.push_back(patch); });
+      patches.begin[k + 1] = static_cast<std::uint32_t>(patches.all.size());
+    }
+  });
+  found_ = true;
+}
+
 template <int Dim> std::size_t WallSupport<Dim>::bytes() const {
-  return (integrals_ ? integrals_->bytes() : 0) + plane_.capacity() * sizeof(plane_[0]);
+  std::size_t bytes = (integrals_ ? integrals_->bytes() : 0) + plane_.capacity() * sizeof(plane_[0]);
+  for (const Patches& p : patches_) bytes += sizeof p + p.all.capacity() * sizeof p.all[0];
+  return bytes;
 }
 
 template class WallSupport<2>;
 template class WallSupport<3>;
-template void WallSupport<2>::mark(const Particles<2, float>&, std::size_t);
-template void WallSupport<2>::mark(const Particles<2, double>&, std::size_t);
-template void WallSupport<3>::mark(const Particles<3, float>&, std::size_t);
-template void WallSupport<3>::mark(const Particles<3, double>&, std::size_t);
+#define MOLTEN_INSTANTIATE(Dim, Real)                                             \
+  template void WallSupport<Dim>::mark(const Particles<Dim, Real>&, std::size_t); \
+  template void WallSupport<Dim>::find_patches(const Particles<Dim, Real>&, std::size_t);
+MOLTEN_INSTANTIATE(2, float)
+MOLTEN_INSTANTIATE(2, double)
+MOLTEN_INSTANTIATE(3, float)
+MOLTEN_INSTANTIATE(3, double)
 
 }  // namespace molten

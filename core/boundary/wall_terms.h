@@ -154,7 +154,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     Matrix along = Matrix::Zero();  // Σ h (1 − n n)
     Point<Dim> x;
     for (int d = 0; d < Dim; ++d) x[d] = particles_[position][d][slot];
-    walls_.integrals().visit(x, [&](const WallPatch<Dim>& patch) {
+    walls_.visit(slot, x, [&](const WallPatch<Dim>& patch) {
       add_neighbour(wall_terms_detail::neighbour_of<Dim, Real>(patch), walls_.wall(patch.wall), own, walls);
       hidden += patch.hidden;
       along += patch.hidden * (Matrix::Identity() - patch.normal * patch.normal.transpose());

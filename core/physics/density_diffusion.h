@@ -1,7 +1,7 @@
 // Density diffusion (δ-SPH: Molteni and Colagrossi 2009) without the hydrostatic part of the difference (Fourtakas et
 // al. 2019), so that a fluid at rest stays as it is, also at its surface and its walls:
 //   dρ_i/dt += 2 δ h c Σ V_j (ρ_i − ρ_j − ρ^H_ij) W'/r,  ρ^H_ij = ρ̄ g·(x_i − x_j)/c(ρ̄)²,  c(ρ)² = c² (ρ/ρ0)^{γ−1}
-// (γ = 1: the linear equation of state), to first order in ρ̄/ρ0 − 1.
+// (γ = 1: the linear equation of state and the ideal gas), to first order in ρ̄/ρ0 − 1.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ template <int Dim, class Real> struct DensityDiffusion {
                    const std::array<double, Dim>& gravity)
       : on(delta > 0),
         strength(Real(2 * delta * smoothing_length * eos.sound_speed)),
-        stiffening(Real(eos.kind == StateEquation::linear ? 0.5 : (2 - eos.gamma) / 2)) {
+        stiffening(Real(eos.kind != StateEquation::tait ? 0.5 : (2 - eos.gamma) / 2)) {
     for (int d = 0; d < Dim; ++d) hydrostatic[d] = Real(gravity[d] / (eos.sound_speed * eos.sound_speed));
   }
 

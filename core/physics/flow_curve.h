@@ -23,14 +23,15 @@ inline double thermal_factor(const ThermalViscosity& t, double temperature) {
 /// Pa s, without the factor and the cut.
 inline double flow_curve_viscosity(const Rheology& r, double strain) {
   using Model = Rheology::Model;
-  const double tiny = 1e-30, rate = std::max(strain, tiny), power = r.consistency * std::pow(rate, r.flow_index - 1);
+  const double tiny = 1e-30, rate = std::max(strain, tiny);
+  const auto power = [&] { return r.consistency * std::pow(rate, r.flow_index - 1); };  // dear: where it is asked for
   switch (r.model) {
     case Model::power_law:
-      return power;
+      return power();
     case Model::bingham:
       return r.viscosity - r.yield_stress * std::expm1(-r.regularisation * rate) / rate;
     case Model::herschel_bulkley:
-      return power - r.yield_stress * std::expm1(-r.regularisation * rate) / rate;
+      return power() - r.yield_stress * std::expm1(-r.regularisation * rate) / rate;
     case Model::cross:
       return r.fast_viscosity +
              (r.viscosity - r.fast_viscosity) / (1 + std::pow(r.relaxation_time * rate, 1 - r.flow_index));

@@ -61,7 +61,7 @@ struct EquationOfState {
   /// The compression of a fluid at rest: dp = ρ dφ, p = 0 where φ = 0; φ = gravity times depth, m²/s².
   double compression_at_rest(double potential) const {
     const double part = potential / (sound_speed * sound_speed);
-    if (kind == StateEquation::linear || gamma == 1) return std::expm1(part);
+    if (kind != StateEquation::tait || gamma == 1) return std::expm1(part);
     return std::expm1(std::log1p((gamma - 1) * part) / (gamma - 1));
   }
 };

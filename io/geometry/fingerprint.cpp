@@ -1,4 +1,8 @@
-// The hash that tells whether a run may go on from a checkpoint.
+// The hash that tells whether a run may go on from a checkpoint: of all that a scene says but where it stands, what it
+// is called, and what it writes. Each struct is taken apart into all of its members, so that a new one does not compile
+// until it is named here.
+#include <type_traits>
+
 #include "io/geometry/assemble.h"
 #include "io/hash.h"
 
@@ -6,61 +10,129 @@ namespace molten {
 
 namespace {
 
+template <class... T> void add(Hash& hash, const T&... values);
+
+void add_one(Hash& hash, const GroundLayer& g) {
+  const auto& [diffusivity, thickness] = g;
+  add(hash, diffusivity, thickness);
+}
+
+void add_one(Hash& hash, const ThermalViscosity& t) {
+  const auto& [kind, activation_temperature, reference_temperature, a, b, c] = t;
+  add(hash, kind, activation_temperature, reference_temperature, a, b, c);
+}
+
+void add_one(Hash& hash, const Rheology& r) {
+  const auto& [model, viscosity, flow_index, jump_number, yield_stress, consistency, regularisation, fast_viscosity,
+               relaxation_time, largest_viscosity, thermal] = r;
+  add(hash, model, viscosity, flow_index, jump_number, yield_stress, consistency, regularisation, fast_viscosity,
+      relaxation_time, largest_viscosity, thermal);
+}
+
+void add_one(Hash& hash, const Heat& h) {
+  const auto& [diffusivity, melting_range, initial_bottom, initial_top] = h;
+  add(hash, diffusivity, melting_range, initial_bottom, initial_top);
+}
+
+/// Without the bodies and their number, which the start has.
+void add_one(Hash& hash, const Fluid& f) {
+  const auto& [bodies, particles, spacing, density, hydrostatic, rheology, heat, place] = f;
+  add(hash, density, hydrostatic, rheology, heat);
+}
+
+/// Without the shape, which the walls have.
+void add_one(Hash& hash, const Boundary& b) {
+  const auto& [shape, restitution, slip, velocity, temperature, ground, inside] = b;
+  add(hash, restitution, slip, velocity, temperature, ground, inside);
+}
+
+void add_one(Hash& hash, const Xsph& x) {
+  const auto& [form, epsilon, neighbour_density] = x;
+  add(hash, form, epsilon, neighbour_density);
+}
+
+void add_one(Hash& hash, const Shifting& s) {
+  const auto& [strength] = s;
+  add(hash, strength);
+}
+
+void add_one(Hash& hash, const DensityFilter& f) {
+  const auto& [kind, every] = f;
+  add(hash, kind, every);
+}
+
+void add_one(Hash& hash, const SleepBounds& s) {
+  const auto& [speed, density_rate, temperature_rate, temperature, after] = s;
+  add(hash, speed, density_rate, temperature_rate, temperature, after);
+}
+
+/// Without the preset's name: its numbers count.
+void add_one(Hash& hash, const Numerics& n) {
+  const auto& [preset, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
+               artificial_viscosity, particle_sound_speed, tensile_correction, muller_viscosity, internal_energy, xsph,
+               stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction,
+               shifting, courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion,
+               wall_support, fixed_dt, sleep] = n;
+  add(hash, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
+      artificial_viscosity, particle_sound_speed, tensile_correction, muller_viscosity, internal_energy, xsph,
+      stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction, shifting,
+      courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion, wall_support, fixed_dt,
+      sleep);
+}
+
+void add_one(Hash& hash, const Box& b) {
+  const auto& [min, max] = b;
+  add(hash, min, max);
+}
+
+void add_one(Hash& hash, const Scene& s) {
+  const auto& [title, file, text, places, dimensions, gravity, periodic, domain, fluid, boundaries, numerics, run,
+               output] = s;
+  add(hash, dimensions, gravity, periodic, domain, fluid, boundaries, numerics);
+}
+
+void add_one(Hash& hash, const Start& s) {
+  const auto& [spacing, measure, position, velocity, temperature] = s;
+  add(hash, spacing, measure, position, velocity, temperature);
+}
+
+template <class T>
+requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+void add_one(Hash& hash, const T& value) { hash.add(value); }
+
+template <class T, std::size_t size> void add_one(Hash& hash, const std::array<T, size>& values) {
+  for (const T& value : values) add_one(hash, value);
+}
+
+template <class T> void add_one(Hash& hash, const std::vector<T>& values) {
+  hash.add(values.size());
+  for (const T& value : values) add_one(hash, value);
+}
+
+template <class T> void add_one(Hash& hash, const std::optional<T>& value) {
+  hash.add(value.has_value());
+  if (value) add_one(hash, *value);
+}
+
+template <class... T> void add(Hash& hash, const T&... values) { (add_one(hash, values), ...); }
+
+/// Where the walls are, with what their files hold.
 template <int Dim> void add_walls(Hash& hash, const Scene& scene, double spacing) {
   for (const Wall<Dim>& wall : build_walls<Dim>(scene, spacing)) {
+    hash.add(wall.vertices.size());
     for (const auto& v : wall.vertices) hash.add(v.data(), Dim);
     for (const auto& f : wall.facets) hash.add(f.data(), Dim);
     hash.add(wall.plane_point.data(), Dim);
     hash.add(wall.plane_normal.data(), Dim);
-    hash.add(wall.response.restitution);
-    hash.add(wall.response.slip);
-    hash.add(wall.skin.velocity.data(), Dim);
-    for (const double number :
-         {wall.skin.temperature.value_or(1e300), wall.skin.layer_diffusivity, wall.skin.layer_thickness})
-      hash.add(number);
   }
-}
-
-void add_numerics(Hash& hash, const Numerics& n) {
-  hash.add(static_cast<int>(n.precision));
-  hash.add(static_cast<int>(n.resort));
-  hash.add(static_cast<int>(n.kernel));
-  hash.add(static_cast<int>(n.integrator));
-  hash.add(static_cast<int>(n.state_equation));
-  hash.add(n.xsph ? 1 + static_cast<int>(n.xsph->form) : 0);
-  for (const double number :
-       {n.smoothing_ratio, n.skin, n.gamma, n.sound_speed.value_or(0), n.artificial_viscosity,
-        n.xsph ? n.xsph->epsilon : 0, n.courant_sound, n.courant_viscous, n.courant_force, n.courant_conduction,
-        n.fixed_dt.value_or(0), n.density_diffusion, n.wall_support ? 1.0 : 0.0})
-    hash.add(number);
-  if (n.sleep)
-    for (const auto& bound :
-         {n.sleep->speed, n.sleep->density_rate, n.sleep->temperature_rate, n.sleep->temperature, n.sleep->after})
-      hash.add(bound.value_or(-1));
 }
 
 }  // namespace
 
 std::string fingerprint(const Scene& scene, const Start& start) {
   Hash hash;
-  hash.add(scene.dimensions);
-  hash.add(start.spacing);
-  hash.add(start.position.data(), start.position.size());
-  hash.add(start.velocity.data(), start.velocity.size());
-  hash.add(start.temperature.data(), start.temperature.size());
-  const Rheology& r = scene.fluid.rheology;
-  hash.add(static_cast<int>(r.model));
-  for (const double number :
-       {scene.fluid.density, r.viscosity, r.flow_index, r.jump_number[0], r.jump_number[1], r.yield_stress,
-        r.consistency, scene.gravity[0], scene.gravity[1], scene.gravity[2], scene.fluid.hydrostatic ? 1.0 : 0.0})
-    hash.add(number);
-  if (scene.fluid.heat) {
-    hash.add(scene.fluid.heat->diffusivity);
-    hash.add(scene.fluid.heat->melting_range.value_or(std::array<double, 2>{}).data(), 2);
-  }
-  if (scene.domain) hash.add(scene.domain->min), hash.add(scene.domain->max), hash.add(scene.periodic);
+  add(hash, scene, start);
   scene.dimensions == 2 ? add_walls<2>(hash, scene, start.spacing) : add_walls<3>(hash, scene, start.spacing);
-  add_numerics(hash, scene.numerics);
   return hash.text();
 }
 

@@ -98,7 +98,10 @@ std::string seal_defect(const std::filesystem::path& file, const std::string& ki
   const std::string begin = fmt::format("{}{}\nbytes ", start, format);
   if (!found.starts_with(begin)) {
     const std::string other = found.substr(start.size(), found.find('\n') - start.size());
-    return fmt::format("is of format {}, and this molten reads format {}", other.substr(0, 20), format);
+    return fmt::format(
+        "is of format {}, and this molten reads format {}; read it with the molten that wrote it, or run the scene "
+        "anew",
+        other.substr(0, 20), format);
   }
   const auto stated = std::strtoull(found.c_str() + begin.size(), nullptr, 10);
   if (bytes < stated) return fmt::format("is truncated: {} of {} bytes", bytes, stated);

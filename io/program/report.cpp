@@ -72,21 +72,23 @@ std::string cpu_name() {
 
 void write_summary(const std::filesystem::path& folder, const Summary& s) {
   const double per_second = s.wall_time_s > 0 ? 1 / s.wall_time_s : 0;
-  write_json(folder / "summary.json", {{"status", s.status},
-                                       {"particles", s.particles},
-                                       {"particles_moving", s.particles - s.particles_asleep},
-                                       {"particles_asleep", s.particles_asleep},
-                                       {"particles_lost", s.particles_lost},
-                                       {"steps", s.steps},
-                                       {"simulated_time_s", s.simulated_time_s},
-                                       {"wall_time_s", s.wall_time_s},
-                                       {"particle_steps_per_second", s.particle_steps * per_second},
-                                       {"share_asleep", s.particle_steps > 0 ? s.asleep_steps / s.particle_steps : 0},
-                                       {"pairs_per_second", s.pairs * per_second},
-                                       {"threads", s.threads},
-                                       {"state_bytes", s.state_bytes},
-                                       {"peak_memory_bytes", peak_memory_bytes()},
-                                       {"passes", s.passes}});
+  nlohmann::ordered_json json = {{"status", s.status},
+                                 {"particles", s.particles},
+                                 {"particles_moving", s.particles - s.particles_asleep},
+                                 {"particles_asleep", s.particles_asleep},
+                                 {"particles_lost", s.particles_lost},
+                                 {"steps", s.steps},
+                                 {"simulated_time_s", s.simulated_time_s},
+                                 {"wall_time_s", s.wall_time_s},
+                                 {"particle_steps_per_second", s.particle_steps * per_second},
+                                 {"share_asleep", s.particle_steps > 0 ? s.asleep_steps / s.particle_steps : 0},
+                                 {"pairs_per_second", s.pairs * per_second},
+                                 {"threads", s.threads},
+                                 {"state_bytes", s.state_bytes},
+                                 {"peak_memory_bytes", peak_memory_bytes()},
+                                 {"passes", s.passes}};
+  if (s.energy_taken_by_sleep) json["energy_taken_by_sleep_J"] = *s.energy_taken_by_sleep;
+  write_json(folder / "summary.json", json);
 }
 
 void write_manifest(const std::filesystem::path& folder, const Scene& scene, const Features& features,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace molten {
 struct Summary {
   std::string status;  // "done", "interrupted", "diverged"
   std::int64_t particles = 0, particles_asleep = 0, particles_lost = 0, steps = 0;
+  std::optional<double> energy_taken_by_sleep;  // J
   double simulated_time_s = 0;
   double wall_time_s = 0;                                  // of the stepping loop, output not counted
   double particle_steps = 0, asleep_steps = 0, pairs = 0;  // particle_steps counts those asleep, too

@@ -82,7 +82,7 @@ template <int Dim, class Real> class Runner {
 
  private:
   void begin() {
-    series_.emplace(folder_ / "series.csv", fresh_ ? 0 : ledger_.rows);
+    series_.emplace(folder_ / "series.csv", fresh_ ? 0 : ledger_.rows, state_.features);
     if (fresh_) {
       const Diagnostics d = diagnose(state_);
       ledger_.initial_energy = d.kinetic_energy + d.potential_energy;
@@ -185,6 +185,7 @@ template <int Dim, class Real> class Runner {
     s.status = status;
     s.particles = static_cast<std::int64_t>(state_.particles.count());
     s.particles_asleep = state_.sleep.asleep;
+    if (state_.features.sleep) s.energy_taken_by_sleep = state_.sleep.taken_energy;
     s.particles_lost = static_cast<std::int64_t>(state_.neighbours.dropped());
     s.steps = state_.clock.step;
     s.simulated_time_s = state_.clock.time;
@@ -298,16 +299,18 @@ struct Usable {
 
 /// The newest checkpoint that reads well; tells of those that don't.
 Usable newest_usable(const std::filesystem::path& folder) {
-  std::string reason = folder.string() + ": holds no checkpoint; start it with `molten run`";
+  std::vector<std::string> defects;
   for (const auto& file : list_checkpoints(folder)) {
     try {
-      return {file, read_checkpoint_head(file)};
+      const CheckpointHead head = read_checkpoint_head(file);
+      for (const std::string& defect : defects) fmt::print(stderr, "warning: {}; taking the one before\n", defect);
+      return {file, head};
     } catch (const Error& e) {
-      reason = e.what();
-      fmt::print(stderr, "warning: {}; trying the one before\n", reason);
+      defects.push_back(e.what());
     }
   }
-  throw Error(ExitCode::checkpoint, reason);
+  throw Error(ExitCode::checkpoint,
+              defects.empty() ? folder.string() + ": holds no checkpoint; start it with `molten run`" : defects[0]);
 }
 
 }  // namespace

@@ -10,11 +10,17 @@ namespace molten {
 
 namespace {
 
-constexpr const char* header =
-    "time_s,step,dt_s,limit,particles,kinetic_energy_J,potential_energy_J,heat_kgK,momentum_x_kgm/s,momentum_y_kgm/s,"
-    "momentum_z_kgm/s,lower_x_m,lower_y_m,lower_z_m,upper_x_m,upper_y_m,upper_z_m,max_speed_m/"
-    "s,max_compression,internal_energy_J,"
-    "least_energy_share,mean_energy_share,largest_energy_share\n";
+bool bounds_energy(const Features& f) { return f.integrator == IntegratorKind::energy_bounded_euler; }
+
+std::string header_of(const Features& f) {
+  std::string header =
+      "time_s,step,dt_s,limit,particles,kinetic_energy_J,potential_energy_J,heat_kgK,momentum_x_kgm/s,momentum_y_kgm/s,"
+      "momentum_z_kgm/s,lower_x_m,lower_y_m,lower_z_m,upper_x_m,upper_y_m,upper_z_m,max_speed_m/s,max_compression";
+  if (f.internal_energy) header += ",internal_energy_J";
+  if (bounds_energy(f)) header += ",least_energy_share,mean_energy_share,largest_energy_share";
+  if (f.sleep) header += ",asleep,energy_taken_by_sleep_J";
+  return header;
+}
 
 std::vector<std::string> first_rows(const std::filesystem::path& file, std::int64_t count) {
   std::vector<std::string> rows;
@@ -27,12 +33,13 @@ std::vector<std::string> first_rows(const std::filesystem::path& file, std::int6
 
 }  // namespace
 
-Series::Series(const std::filesystem::path& file, std::int64_t keep) : file_(file) {
+Series::Series(const std::filesystem::path& file, std::int64_t keep, const Features& features)
+    : file_(file), features_(features) {
   const std::vector<std::string> kept = first_rows(file, keep);
   const std::filesystem::path part = file.string() + ".tmp";
   {
     std::ofstream fresh(part, std::ios::trunc);
-    fresh << header;
+    fresh << header_of(features) << '\n';
     for (const std::string& row : kept) fresh << row << '\n';
     if (!fresh.flush())
       throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
@@ -44,10 +51,15 @@ Series::Series(const std::filesystem::path& file, std::int64_t keep) : file_(fil
 void Series::add(const Clock& c, const Diagnostics& d) {
   out_ << fmt::format(
       "{:.9g},{},{:.6g},{},{},{:.9g},{:.9g},{:.12g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},"
-      "{:.6g},{:.6g},{:.6g},{:.9g},{:.6g},{:.6g},{:.6g}\n",
+      "{:.6g},{:.6g},{:.6g}",
       c.time, c.step, c.dt, name_of(c.limit), d.particles, d.kinetic_energy, d.potential_energy, d.heat, d.momentum[0],
       d.momentum[1], d.momentum[2], d.lower[0], d.lower[1], d.lower[2], d.upper[0], d.upper[1], d.upper[2], d.max_speed,
-      d.max_compression, d.internal_energy, d.least_energy_share, d.mean_energy_share, d.largest_energy_share);
+      d.max_compression);
+  if (features_.internal_energy) out_ << fmt::format(",{:.9g}", d.internal_energy);
+  if (bounds_energy(features_))
+    out_ << fmt::format(",{:.6g},{:.6g},{:.6g}", d.least_energy_share, d.mean_energy_share, d.largest_energy_share);
+  if (features_.sleep) out_ << fmt::format(",{},{:.9g}", d.asleep, d.energy_taken_by_sleep);
+  out_ << '\n';
   if (!out_.flush()) throw Error(ExitCode::files, file_.string() + ": cannot write; check the disk");
 }
 

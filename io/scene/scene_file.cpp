@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/features.h"
 #include "io/scene/scene_sections.h"
 #include "io/scene/scene_shapes.h"
 
@@ -43,7 +44,6 @@ void read_periodic(const TomlReader& keys, Scene& scene) {
     }
     scene.periodic[index] = true;
   }
-  if (!axes.empty() && !scene.domain) keys.fail("periodic", "needs the size of the period; add domain = { min, max }");
 }
 
 void read_head(const TomlReader& root, Scene& scene) {
@@ -169,6 +169,18 @@ Output read_output(const TomlReader& root) {
   return output;
 }
 
+/// Where each key stands.
+void note_places(const TomlDocument& document, const toml::node& node, const std::string& name, Scene& scene) {
+  if (!name.empty()) scene.places[name] = document.place(node.source());
+  const auto note = [&](std::string_view key, const toml::node& inner) {
+    note_places(document, inner, name.empty() ? std::string(key) : fmt::format("{}.{}", name, key), scene);
+  };
+  if (const toml::table* table = node.as_table())
+    for (const auto& [key, inner] : *table) note(key.str(), inner);
+  if (node.is_array_of_tables())
+    for (std::size_t k = 0; k < node.as_array()->size(); ++k) note(std::to_string(k), *node.as_array()->get(k));
+}
+
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
@@ -186,6 +198,8 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   }
   scene.run = read_run(root);
   scene.output = read_output(root);
+  note_places(document, document.root, "", scene);
+  features_of(scene);  // refuses what does not go together
   return scene;
 }
 

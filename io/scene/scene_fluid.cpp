@@ -204,20 +204,6 @@ std::optional<Heat> read_heat(const TomlReader& fluid, bool all_bodies_have_one)
   return heat;
 }
 
-/// A melting range acts on a pair of jump numbers, and a pair needs one.
-void check_melting(const TomlReader& keys, const Fluid& fluid) {
-  const bool melts = fluid.heat && fluid.heat->melting_range;
-  const auto& [hot, cold] = fluid.rheology.jump_number;
-  if (hot != cold && !melts) {
-    keys.table("rheology", rheology_keys)
-        ->fail("jump_number", "differs between hot and cold, but nothing melts; add melting_range to [fluid.heat]");
-  }
-  if (melts && fluid.rheology.model != Rheology::Model::smd) {
-    keys.table("heat", heat_keys)
-        ->fail("melting_range", "acts on the jump_number of model \"smd\" alone; leave it out or use that model");
-  }
-}
-
 }  // namespace
 
 Fluid read_fluid(const TomlReader& root, int dimensions) {
@@ -234,7 +220,6 @@ Fluid read_fluid(const TomlReader& root, int dimensions) {
   bool all_have_temperature = true;
   for (const Body& body : fluid.bodies) all_have_temperature = all_have_temperature && body.temperature.has_value();
   fluid.heat = read_heat(keys, all_have_temperature);
-  check_melting(keys, fluid);
   return fluid;
 }
 

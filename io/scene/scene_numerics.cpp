@@ -75,6 +75,8 @@ void read_choices(const TomlReader& keys, Numerics& numerics) {
       {{"linear", StateEquation::linear}, {"tait", StateEquation::tait}, {"ideal_gas", StateEquation::ideal_gas}});
   keys.choice<DensityForm>("density", numerics.density,
                            {{"continuity", DensityForm::continuity}, {"summation", DensityForm::summation}});
+  // That of a preset goes with its density.
+  if (numerics.density != DensityForm::summation && !keys.has("density_kernel")) numerics.density_kernel.reset();
 }
 
 void read_xsph(const TomlReader& keys, Numerics& numerics) {
@@ -106,8 +108,6 @@ void read_density_filter(const TomlReader& keys, Numerics& numerics) {
   table.choice<DensityFilter::Kind>("kind", filter.kind,
                                     {{"shepard", DensityFilter::Kind::shepard}, {"mls", DensityFilter::Kind::mls}});
   table.whole("every", filter.every, 1, 1000000);
-  if (numerics.density == DensityForm::summation)
-    keys.fail("density_filter", "has nothing to do for density = \"summation\"; leave one of them out");
   numerics.density_filter = filter;
 }
 
@@ -131,12 +131,7 @@ void read_seldom(const TomlReader& keys, Numerics& numerics) {
   if (keys.has("energy_surplus") && numerics.integrator != IntegratorKind::energy_bounded_euler)
     keys.fail("energy_surplus", "belongs to integrator \"energy_bounded_euler\"; leave it out");
   keys.flag("energy_surplus", numerics.energy_surplus);
-  if (keys.has("density_kernel") && numerics.density != DensityForm::summation)
-    keys.fail("density_kernel", "is that of density = \"summation\"; add it or leave this out");
   keys.choice<bool>("viscosity_form", numerics.muller_viscosity, {{"morris", false}, {"muller", true}});
-  if (numerics.particle_sound_speed && (numerics.state_equation != StateEquation::tait || numerics.gamma != 7)) {
-    keys.fail("particle_sound_speed", "is that of state_equation \"tait\" with gamma = 7; use them or leave it out");
-  }
 }
 
 void read_shifting(const TomlReader& keys, Numerics& numerics) {
@@ -150,9 +145,6 @@ void read_shifting(const TomlReader& keys, Numerics& numerics) {
     Shifting shifting = numerics.shifting.value_or(Shifting{});
     table.number("strength", shifting.strength, Range{0, 100, false, ""});
     numerics.shifting = shifting;
-  }
-  if (numerics.shifting && !numerics.gradient_correction) {
-    keys.fail("shifting", "needs corrected gradients; add gradient_correction = true");
   }
 }
 

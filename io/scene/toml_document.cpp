@@ -149,8 +149,7 @@ TomlDocument parse_toml(const std::string& raw, const std::string& file, const s
 }
 
 void fail_at(const Place& place, const std::string& message) {
-  const std::string where = place.line > 0 ? fmt::format("{}:{}:{}", place.file, place.line, place.column) : place.file;
-  throw Error(ExitCode::usage, where + ": " + message);
+  throw Error(ExitCode::usage, text_of(place) + ": " + message);
 }
 
 std::string one_line(std::string_view text) {

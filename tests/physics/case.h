@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,30 +15,22 @@
 #include "io/geometry/assemble.h"
 #include "io/scene/scene_file.h"
 #include "tests/flavours.h"
+#include "tests/particle_sets.h"
+#include "tests/with_threads.h"
 
 namespace molten::physics_case {
 
 /// Small runs are quicker without threads, and a busy machine does not slow them.
-struct OneThread {
-  OneThread() : before(omp_get_max_threads()) { omp_set_num_threads(1); }
-  ~OneThread() { omp_set_num_threads(before); }
-  int before;
+struct OneThread : WithThreads {
+  OneThread() : WithThreads(1) {}
 };
 
 using Triple = std::array<double, 3>;
 
 /// A lattice of `cells` particles along each axis, its first cell at the origin; heat is for the caller to fill in.
 inline Start lattice(int dimensions, const std::array<int, 3>& cells, double spacing) {
-  Start start;
-  start.spacing = spacing;
-  for (int k = 0; k < (dimensions == 3 ? cells[2] : 1); ++k)
-    for (int j = 0; j < cells[1]; ++j)
-      for (int i = 0; i < cells[0]; ++i)
-        start.position.push_back(
-            {(i + 0.5) * spacing, (j + 0.5) * spacing, dimensions == 3 ? (k + 0.5) * spacing : 0.0});
-  start.velocity.assign(start.position.size(), Triple{});
-  start.measure = static_cast<double>(start.position.size()) * std::pow(spacing, dimensions);
-  return start;
+  return particle_sets::start_of(particle_sets::plain_scene(dimensions),
+                                 particle_sets::lattice({cells.begin(), cells.begin() + dimensions}, spacing), spacing);
 }
 
 inline void jitter(Start& start, int dimensions, double part) {
@@ -52,11 +43,8 @@ inline void jitter(Start& start, int dimensions, double part) {
 /// A scene of these dimensions without gravity and artificial viscosity; the fluid's shape is a stand-in, as the
 /// particles come from a lattice.
 inline Scene plain_scene(int dimensions) {
-  Scene scene;
+  Scene scene = particle_sets::plain_scene(dimensions);
   scene.file = "test";
-  scene.dimensions = dimensions;
-  scene.gravity = {};
-  scene.numerics.artificial_viscosity = 0;
   scene.numerics.sound_speed = 1;
   return scene;
 }
@@ -74,8 +62,7 @@ template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, con
 
 /// f(slot) for every particle.
 template <int Dim, class Real, class F> void for_each_particle(const State<Dim, Real>& s, F&& f) {
-  for (std::size_t slot = 0; slot < s.particles.slots(); ++slot)
-    if (!s.particles.is_padding(slot)) f(slot);
+  particle_sets::for_each_particle(s.particles, [&](std::size_t slot, const auto&) { f(slot); });
 }
 
 template <int Dim, class Real> void run_until(State<Dim, Real>& s, double time) {

@@ -2,6 +2,7 @@
 // solution of the equation of state.
 #include <fmt/format.h>
 
+#include "core/physics/density_diffusion.h"
 #include "tests/physics/case.h"
 
 namespace molten {
@@ -90,7 +91,7 @@ void expect_rest(const Rest& rest, double pressure, double kinetic) {
 }
 
 TEST(EquationOfStateAtRest, IsTheIntegralOfItsDensity) {
-  for (const StateEquation kind : {StateEquation::tait, StateEquation::linear}) {
+  for (const StateEquation kind : {StateEquation::tait, StateEquation::linear, StateEquation::ideal_gas}) {
     const EquationOfState eos{kind, 1000, 20, 7};
     double compression = 0;
     for (int k = 0; k < 1000; ++k) {  // dp = ρ dφ by the midpoint rule
@@ -99,6 +100,21 @@ TEST(EquationOfStateAtRest, IsTheIntegralOfItsDensity) {
       compression += 0.01 * 1000 * (1 + middle) / stiffness;
     }
     EXPECT_NEAR(eos.compression_at_rest(10), compression, 1e-6);
+  }
+}
+
+TEST(EquationOfStateAtRest, IsWhatDensityDiffusionLeavesAsItIs) {
+  // Two particles one above the other in a fluid at rest: to first order in the compression nothing flows between them.
+  const double gravity = 10, apart = 0.1;
+  for (const StateEquation kind : {StateEquation::tait, StateEquation::linear, StateEquation::ideal_gas}) {
+    const EquationOfState eos{kind, 1000, 20, 7};
+    const DensityDiffusion<2, double> diffusion(0.1, 0.13, eos, {0, -gravity});
+    const double below = eos.compression_at_rest(gravity * 1.1), above = eos.compression_at_rest(gravity * 1.0);
+    // g·(x_i − x_j)/c² (1 + stiffening (δ_i + δ_j)), i the lower one, against δ_i − δ_j.
+    const double slope = gravity * apart / 400;
+    const double at_rest = slope * (1 + diffusion.stiffening * (below + above));
+    EXPECT_NEAR(below - above, at_rest, 15 * slope * below * below) << static_cast<int>(kind);
+    EXPECT_GT(std::abs(below - above - slope), 30 * slope * below * below) << "or the stiffening says nothing";
   }
 }
 

@@ -46,7 +46,7 @@ Scene channel_scene(const Channel& c, double length) {
   scene.numerics.density_diffusion = 0.1;
   scene.numerics.wall_support = true;
   scene.numerics.smoothing_ratio = c.smoothing_ratio;
-  scene.boundaries.emplace_back();  // stands for the walls below
+  scene.boundaries.emplace_back().shape.plane.emplace();  // stands for the walls below
   scene.domain = Box{{0, -1, 0}, {length, 2, 0}};
   scene.periodic = {true, false, false};
   return scene;

@@ -1,0 +1,81 @@
+// The numbers of a run that follow from several of the scene's: the bounds of rest.
+#include "core/parameters.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/particle_sets.h"
+
+namespace molten {
+namespace {
+
+using namespace particle_sets;
+
+constexpr double spacing = 0.02;
+
+Scene sleepy_scene() {
+  Scene scene = plain_scene(2);
+  scene.numerics.sleep.emplace();
+  return scene;
+}
+
+RestBounds bounds_of(const Scene& scene, std::vector<double> temperatures = {}) {
+  Start start = start_of(scene, cube<2>(2, spacing), spacing);
+  if (!temperatures.empty()) start.temperature = std::move(temperatures);
+  return *parameters_of<2>(scene, start).rest;
+}
+
+TEST(RestBounds, LastAsLongAsTheTopOfAThrow) {
+  Scene scene = sleepy_scene();
+  const double sound = 40 * 1.3 * spacing / 10;
+  EXPECT_NEAR(bounds_of(scene).after, sound, 1e-15);
+  scene.gravity = {0, -9.81, 0};
+  EXPECT_NEAR(bounds_of(scene).after, sound, 1e-15);
+  scene.numerics.sleep->speed = 0.5;
+  EXPECT_NEAR(bounds_of(scene).after, 4 * 0.5 / 9.81, 1e-15);
+  scene.numerics.sleep->after = 4 * 0.5 / 9.81 + 1e-6;
+  EXPECT_EQ(bounds_of(scene).after, scene.numerics.sleep->after);
+}
+
+TEST(RestBounds, AreRefusedIfTheyMistakeATopForRest) {
+  Scene scene = sleepy_scene();
+  scene.file = "s.toml";
+  scene.places["numerics.sleep.after"] = {"s.toml", 7, 3};
+  scene.gravity = {3, -4, 0};
+  scene.numerics.sleep->speed = 0.5;
+  scene.numerics.sleep->after = 0.39;
+  try {
+    bounds_of(scene);
+    ADD_FAILURE() << "taken";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::usage);
+    const std::string line = e.what();
+    EXPECT_TRUE(line.starts_with("s.toml:7:3: numerics.sleep.after: 0.39")) << line;
+    EXPECT_NE(line.find("at least 4 speed/|g|, 0.4"), std::string::npos) << line;
+    EXPECT_NE(line.find("lower numerics.sleep.speed"), std::string::npos) << line;
+  }
+}
+
+TEST(RestBounds, OfHeatCountTheWallsTemperatures) {
+  Scene scene = sleepy_scene();
+  scene.fluid.heat = Heat{1e-4, std::nullopt, 20, 20};
+  scene.boundaries.resize(2);
+  scene.boundaries[1].temperature = 120;
+  const RestBounds bounds = bounds_of(scene);
+  EXPECT_NEAR(bounds.temperature, 1, 1e-12);
+  EXPECT_NEAR(bounds.temperature_rate, 1e-3 * 100 * 1e-4 / std::pow(1.3 * spacing, 2), 1e-12);
+}
+
+TEST(RestBounds, OfHeatAreMoreThanRoundOff) {
+  Scene scene = sleepy_scene();
+  scene.fluid.heat = Heat{1e-4, std::nullopt, 1273, 1273};
+  for (const auto& asked : {std::optional<double>(), std::optional<double>(0)}) {
+    scene.numerics.sleep->temperature = asked;
+    EXPECT_GT(bounds_of(scene).temperature, std::nextafter(1273.f, 2000.f) - 1273.f);
+    EXPECT_LT(bounds_of(scene).temperature, 0.01);
+  }
+  EXPECT_EQ(bounds_of(scene, {20, 20, 20, 60}).temperature, 1e-6 * 60);
+}
+
+}  // namespace
+}  // namespace molten
