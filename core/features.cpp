@@ -91,10 +91,9 @@ Features features_of(const Scene& scene) {
   f.density_diffusion = scene.numerics.density_diffusion > 0;
   f.sleep = scene.numerics.sleep.has_value();
   f.integrator = scene.numerics.integrator;
-  if ((f.wall_support || f.density_diffusion) && (f.gradient_correction || f.any_seldom()))
+  if ((f.wall_support || f.density_diffusion) && f.any_seldom())
     refuse(scene, std::string("numerics.") + (f.wall_support ? "wall_support" : "density_diffusion") +
-                      ": does not go together with gradient_correction or with the methods kept for replication; leave "
-                      "one of the two out");
+                      ": does not go together with the methods kept for replication; leave one of the two out");
   return f;
 }
 

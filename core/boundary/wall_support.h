@@ -27,6 +27,10 @@ template <int Dim> class WallSupport {
   std::int32_t plane(std::size_t cluster) const { return plane_.empty() ? no_plane : plane_[cluster]; }
   static constexpr std::int32_t no_plane = -1, many_planes = -2;
 
+  /// How many times faster the viscous forces of a no-slip wall and of the fluid together damp a particle half a
+  /// spacing from it than they damp the shortest waves far from walls.
+  double viscous_stiffness() const { return viscous_stiffness_; }
+
   const WallIntegrals<Dim>& integrals() const { return *integrals_; }
   const Wall<Dim>& wall(std::int32_t number) const { return walls_[static_cast<std::size_t>(number)]; }
 
@@ -38,6 +42,7 @@ template <int Dim> class WallSupport {
   std::vector<Wall<Dim>> walls_;  // without their facets
   std::vector<std::int32_t> plane_;
   double reach_ = 0;  // m, of the support until the next sort
+  double viscous_stiffness_ = 0;
 };
 
 }  // namespace molten
