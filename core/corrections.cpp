@@ -1,5 +1,6 @@
 // Corrected gradients and shifting: a pass of their own before the rates, and the rates with what it found.
 #include "core/particle_pass.h"
+#include "core/physics/density_diffusion.h"
 #include "core/physics/gradient_correction.h"
 #include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
@@ -50,9 +51,12 @@ template <int Dim, class Real> auto correction_finish(State<Dim, Real>& s, doubl
 template <int Dim, class Real> void find_corrections(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("corrections");
   const auto finish = correction_finish(s, s.features.shifting ? largest_speed(s) : 0);
+  const GradientMoment moments;
+  const Crowding crowding{s.features.shifting};
   with_run_kernel(s, [&](const auto& kernel) {
-    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, GradientMoment{},
-                                  Crowding{s.features.shifting});
+    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel,
+                                  WithWalls(s.wall_support, s.parameters, s.particles, finish, moments, crowding),
+                                  moments, crowding);
   });
 }
 
@@ -61,10 +65,11 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
   constexpr bool corrected = true;
-  run_rates_pass(
+  run_rates_pass_at_walls(
       s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
       ShiftTransport<Real>(f.shifting, rho0), LaminarViscosity<Real, corrected>(f.laminar ? p.viscosity : 0, rho0),
       StressForce<Dim, Real>(f.stress, rho0), HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
+      DensityDiffusion<Dim, Real>(p.density_diffusion, p.smoothing_length, p.eos, p.gravity),
       XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
 }
 

@@ -85,13 +85,11 @@ void require_sensible_walls(const Scene& scene) {
 
 /// What no rates pass has together.
 void require_one_pass(const Scene& scene, const Features& f) {
-  if (!f.gradient_correction && !f.any_seldom()) return;
+  if (!f.any_seldom()) return;
   for (const auto& [there, key] : {std::pair{f.wall_support, "numerics.wall_support"},
                                    std::pair{f.density_diffusion, "numerics.density_diffusion"}})
     if (there)
-      refuse(scene, key,
-             "does not go together with gradient_correction or with the methods kept for replication; leave one of the "
-             "two out");
+      refuse(scene, key, "does not go together with the methods kept for replication; leave one of the two out");
 }
 
 }  // namespace

@@ -153,6 +153,10 @@ TEST(Features, SupportAndDensityDiffusionAddNoColumnAndNoPass) {
   scene.boundaries.emplace_back();
   scene.numerics.density_diffusion = 0.1;
   EXPECT_EQ(features_of(scene).names(), (Names{"contact", "wall-support", "density-diffusion", "leap-frog"}));
+  scene.numerics.gradient_correction = true;
+  scene.numerics.shifting = Shifting{};
+  EXPECT_EQ(features_of(scene).names(),
+            (Names{"gradient-correction", "shifting", "contact", "wall-support", "density-diffusion", "leap-frog"}));
 }
 
 TEST(Features, WallsHeatMeltingAndXsphTogether) {

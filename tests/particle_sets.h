@@ -70,6 +70,7 @@ template <int Dim, class Real>
 State<Dim, Real> state_of(const Scene& scene, const Start& start, std::vector<Wall<Dim>> walls = {}) {
   Features features = features_of(scene);
   features.contact = !walls.empty();
+  features.wall_support = features.contact && scene.numerics.wall_support;
   return make_state<Dim, Real>(features, parameters_of<Dim>(scene, start),
                                Contact<Dim>(std::move(walls), start.spacing / 2, 2.6 * start.spacing), start);
 }

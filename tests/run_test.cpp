@@ -180,6 +180,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Variant{2, "single", "leap_frog"}, Variant{2, "double", "symplectic_euler"},
                       Variant{3, "single", "symplectic_euler"}, Variant{3, "double", "leap_frog"},
                       Variant{2, "single", "leap_frog", "gradient_correction = true  shifting = true"},
+                      Variant{2, "double", "leap_frog",
+                              "gradient_correction = true  shifting = true  wall_support = true"},
                       Variant{2, "double", "predictor_corrector", "density_filter = { kind = \"mls\", every = 7 }"},
                       Variant{2, "single", "runge_kutta_4"}),
     [](const auto& info) {

@@ -123,6 +123,13 @@ TYPED_TEST(ThreadsOf, WallsWithSupportOf50Steps) {
   expect_same_bits<TypeParam::dim, typename TypeParam::Real>(scene, 50);
 }
 
+TYPED_TEST(ThreadsOf, ShiftedFlowBetweenWallsWithSupportOf30Steps) {
+  Scene scene = shifted_flow(TypeParam::dim);
+  scene.numerics.wall_support = true;
+  scene.numerics.density_diffusion = 0.1;
+  expect_same_bits<TypeParam::dim, typename TypeParam::Real>(scene, 30);
+}
+
 TYPED_TEST(ThreadsOf, TheBitsDoChangeWithTheState) {
   // So that the comparisons above are known to see a difference.
   constexpr int Dim = TypeParam::dim;

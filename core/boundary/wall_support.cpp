@@ -4,12 +4,26 @@
 
 namespace molten {
 
+namespace {
+
+/// The rate of damping beside a plane, 2ν ∫W dS/d for the wall's part and half of that of the fluid far from walls,
+/// both over what is left of the support, by that of the fluid.
+double stiffness_beside_plane(const RadialIntegrals& radial, double d, double h) {
+  constexpr double fluid = 8;  // ν/h²; the viscous limit of the time step was measured with it
+  const double wall = 2 * radial.plane_weight(d) * h * h / d;
+  return (wall + fluid / 2) / (fluid * (1 - radial.plane_hidden(d)));
+}
+
+}  // namespace
+
 template <int Dim>
 WallSupport<Dim>::WallSupport(const Contact<Dim>& contact, const Parameters<Dim>& p)
     : integrals_(
           std::make_shared<WallIntegrals<Dim>>(contact.walls(), contact.surface(), p.kernel, p.smoothing_length)),
       walls_(contact.walls()),
-      reach_(integrals_->reach() + p.skin) {}
+      reach_(integrals_->reach() + p.skin),
+      viscous_stiffness_(stiffness_beside_plane(RadialIntegrals(p.kernel, Dim, p.smoothing_length), p.spacing / 2,
+                                                p.smoothing_length)) {}
 
 template <int Dim>
 template <class Real>

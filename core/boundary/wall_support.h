@@ -41,6 +41,10 @@ template <int Dim> class WallSupport {
     for (std::uint32_t n = patches.begin[k]; n < patches.begin[k + 1]; ++n) visit(patches.all[n]);
   }
 
+  /// How many times faster the viscous forces of a no-slip wall and of the fluid together damp a particle half a
+  /// spacing from it than they damp the shortest waves far from walls.
+  double viscous_stiffness() const { return viscous_stiffness_; }
+
   const WallIntegrals<Dim>& integrals() const { return *integrals_; }
   const Wall<Dim>& wall(std::int32_t number) const { return walls_[static_cast<std::size_t>(number)]; }
 
@@ -59,6 +63,7 @@ template <int Dim> class WallSupport {
   std::vector<Patches> patches_;
   bool found_ = false;
   double reach_ = 0;  // m, of the support until the next sort
+  double viscous_stiffness_ = 0;
 };
 
 }  // namespace molten

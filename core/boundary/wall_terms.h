@@ -27,6 +27,7 @@ constexpr double most_hidden = 0.9;  // in a cleft that hardly leaves room to th
 /// A piece of a wall as the neighbour of the particles in the lanes of L.
 template <int Dim, class L> struct WallNeighbour {
   Vec<Dim, L> normal, there;  // there: where p_s is hydrostatic, from the particle, m
+  Vec<Dim, L> centroid;       // of W over the piece, from the particle, m
   L reach, weight, hidden;    // m, 1/m, 1; reach: of the neighbour, straight along the normal
 };
 
@@ -37,6 +38,7 @@ template <int Dim, class Real> WallNeighbour<Dim, Lanes<Real, 1>> neighbour_of(c
   WallNeighbour<Dim, L> n;
   for (int k = 0; k < Dim; ++k) {
     n.normal[k] = L(static_cast<Real>(patch.normal[k]));
+    n.centroid[k] = L(static_cast<Real>(patch.centroid[k]));
     n.there[k] = L(static_cast<Real>(patch.centroid[k] - patch.hidden / patch.weight * patch.normal[k]));
   }
   n.reach = L(static_cast<Real>(aside * aside / std::max(patch.distance, 0.1 * aside)));
@@ -60,7 +62,8 @@ Values<FieldList<F...>, Dim, Lanes<Real, I>> load_own(const Particles<Dim, Real>
 
 }  // namespace wall_terms_detail
 
-/// A finish of a pair pass that adds the walls' share first. Terms of the pass with an `at_walls` do not concern walls.
+/// A finish of a pair pass that adds the walls' share first. Terms of the pass with an `at_walls` do not concern walls;
+/// those with a `behind_wall` add what they make of the solid themselves.
 template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   template <class L> using Neighbour = wall_terms_detail::WallNeighbour<Dim, L>;
   using Reads = typename UnionOf<FieldList<Compression>, typename Terms::Reads...>::type;
@@ -122,6 +125,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     }
     for (int d = 0; d < Dim; ++d) {
       n.normal[d] = L(static_cast<Real>(normal[d]));
+      n.centroid[d] = -(n.reach * n.normal[d]);
       n.there[d] = -(to_there * n.normal[d]);
     }
     return wall;
@@ -185,7 +189,9 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     pair_pass_detail::Out<typename Sums::List, Radial, Dim, L> out{sums, kernel, {}};
     pair_pass_detail::clear(out.radial);
     const auto add = [&]<class Term>(const Term& term) {
-      if constexpr (!requires { Term::at_walls; })
+      if constexpr (requires { term.behind_wall(n, density, out); })
+        term.behind_wall(n, density, out);
+      else if constexpr (!requires { Term::at_walls; })
         if (term.on) term(ij, i, j, out);
     };
     std::apply([&](const Terms&... term) { (add(term), ...); }, terms_);
@@ -236,6 +242,14 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
 
   template <class L, class Along> static void join(CompressionRate, L& sum, const L& walls, const L&, const Along&) {
     sum += L(Real(2)) * walls;
+  }
+  // What measures the support itself: solid and fluid make up the whole of it.
+  template <class L, class V, class Along> static void join(Moment, V& sum, const V& walls, const L&, const Along&) {
+    sum += walls;
+  }
+  template <class L, class V, class Along>
+  static void join(CrowdingGradient, V& sum, const V& walls, const L&, const Along&) {
+    sum += walls;
   }
   template <class L, class Along>  // a sum of W, not of ∇W
   static void join(XsphVelocity, Vec<Dim, L>&, const Vec<Dim, L>&, const L&, const Along&) {}

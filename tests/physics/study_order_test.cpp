@@ -41,12 +41,26 @@ TEST(StudyOrder, PoiseuilleConvergesFasterThanInFirstOrder) {
   EXPECT_GT(errors_of("poiseuille", 12, "internal", {"walls=0"}).order(), 1.5);
 }
 
+TEST(StudyOrder, StartUpBetweenWallsConvergesInFirstOrder) {
+  for (const char* name : {"couette", "poiseuille"}) {
+    const Pair p = errors_of(name, 16, "internal");
+    EXPECT_GT(p.order(), 0.9) << name;
+    EXPECT_LT(p.fine, 0.005) << name;
+  }
+}
+
 TEST(SlowStudyOrder, HotSpotInASolidIsOfSecondOrderWithCorrection) {
   EXPECT_GT(errors_of("hot-spot", 25, "molten", {"numerics.gradient_correction=true", "dimensions=3"}).order(), 1.8);
 }
 
 TEST(SlowStudyOrder, PoiseuilleIsWithinItsReach) {
   EXPECT_LT(error_of("poiseuille", 64, "internal", {"walls=0"}), 0.005);
+}
+
+TEST(SlowStudyOrder, CavityConvergesInFirstOrder) {
+  const Pair p = errors_of("cavity", 25, "internal");
+  EXPECT_GT(p.order(), 0.9);
+  EXPECT_LT(p.fine, 0.0115);
 }
 
 }  // namespace
