@@ -110,7 +110,11 @@ struct Boundary {
   Shape shape;
   double restitution = 0;  // what the normal velocity keeps, reversed
   double slip = 0;         // what the tangential velocity keeps: 0 no-slip, 1 free slip
+  // Either makes the wall hold what touches it up to a stress and drag with that stress beyond, instead of slip:
+  std::optional<double> friction;      // Coulomb's coefficient; tangential over normal stress
+  std::optional<double> yield_stress;  // Pa; sticks up to it, whatever the normal stress
   bool inside = false;     // closed shapes: true = a container, the fluid is inside; false = an obstacle, outside
+  bool two_sided = false;  // meshes and terrain: holds from behind, too
 };
 
 // ---- numerics ---------------------------------------------------------------------------------------------------

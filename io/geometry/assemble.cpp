@@ -166,11 +166,25 @@ Start fill_bodies(const Scene& scene, const Features& features) {
   return start;
 }
 
+namespace {
+
+/// A stress holds a particle by the area that it covers: one spacing across, and as thick.
+Response response_of(const Scene& scene, const Boundary& boundary, double spacing) {
+  Response response{boundary.restitution, boundary.slip};
+  if (boundary.friction || boundary.yield_stress)
+    response.grip = {boundary.friction.value_or(0),
+                     boundary.yield_stress.value_or(0) / (scene.fluid.density * spacing)};
+  return response;
+}
+
+}  // namespace
+
 template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing) {
   std::vector<Wall<Dim>> walls;
   for (const Boundary& boundary : scene.boundaries) {
     Wall<Dim> wall;
-    wall.response = {boundary.restitution, boundary.slip};
+    wall.response = response_of(scene, boundary, spacing);
+    wall.two_sided = boundary.two_sided;
     if (boundary.shape.plane) {
       wall.is_plane = true;
       for (int d = 0; d < Dim; ++d) {

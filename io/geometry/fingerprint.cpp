@@ -14,6 +14,8 @@ template <int Dim> void add_walls(Hash& hash, const Scene& scene, double spacing
     hash.add(wall.plane_normal.data(), Dim);
     hash.add(wall.response.restitution);
     hash.add(wall.response.slip);
+    if (wall.response.grip) hash.add(wall.response.grip->friction), hash.add(wall.response.grip->hold);
+    hash.add(wall.two_sided);
   }
 }
 

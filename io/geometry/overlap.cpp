@@ -67,9 +67,9 @@ std::vector<Test> tests_of(const Scene& scene, double spacing) {
   for (const Boundary& boundary : scene.boundaries) {
     if (boundary.shape.plane)
       tests.push_back(test_of_plane(*boundary.shape.plane, scene.dimensions));
-    else if (boundary.shape.terrain)
+    else if (boundary.shape.terrain && !boundary.two_sided)
       tests.push_back(test_of_terrain(scene, *boundary.shape.terrain));
-    else
+    else if (!boundary.two_sided)
       tests.push_back(test_of_closed(scene, boundary, spacing));
   }
   return tests;

@@ -65,6 +65,8 @@ void read_head(const TomlReader& root, Scene& scene) {
 
 // ---- [[boundary]] ----
 
+const TomlReader::Keys boundary_keys = {"inside", "two_sided", "slip", "restitution", "friction", "yield_stress"};
+
 Boundary read_boundary(const TomlReader& keys, int dimensions) {
   Boundary boundary;
   boundary.shape = read_shape(keys, dimensions, ShapeUse::boundary);
@@ -72,8 +74,17 @@ Boundary read_boundary(const TomlReader& keys, int dimensions) {
   if (keys.has("inside") && (boundary.shape.plane || boundary.shape.terrain)) {
     keys.fail("inside", "is for closed shapes; the fluid is on the side of the normal here");
   }
+  keys.flag("two_sided", boundary.two_sided);
+  if (keys.has("two_sided") && boundary.shape.plane) {
+    keys.fail("two_sided", "is for surfaces that end; give two planes back to back");
+  }
   keys.number("slip", boundary.slip, Range::fraction());
   keys.number("restitution", boundary.restitution, Range::fraction());
+  keys.number("friction", boundary.friction, Range::not_negative(""));
+  keys.number("yield_stress", boundary.yield_stress, Range::not_negative("Pa"));
+  if (keys.has("slip") && (boundary.friction || boundary.yield_stress)) {
+    keys.fail("slip", "stands beside friction or yield_stress, which say how it slips; keep one of them");
+  }
   return boundary;
 }
 
@@ -152,7 +163,7 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   scene.text = document.text;
   read_head(root, scene);
   scene.fluid = read_fluid(root, scene.dimensions);
-  for (const TomlReader& keys : root.tables("boundary", with_shape_keys({"inside", "slip", "restitution"}))) {
+  for (const TomlReader& keys : root.tables("boundary", with_shape_keys(boundary_keys))) {
     scene.boundaries.push_back(read_boundary(keys, scene.dimensions));
   }
   scene.run = read_run(root);
