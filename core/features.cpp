@@ -1,5 +1,7 @@
 #include "core/features.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 
 namespace molten {
@@ -35,6 +37,10 @@ Features features_of(const Scene& scene) {
   f.artificial_viscosity = scene.numerics.artificial_viscosity > 0;
   f.xsph = scene.numerics.xsph && scene.numerics.xsph->epsilon > 0;
   f.contact = !scene.boundaries.empty();
+  f.bodies = std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
+                         [](const Boundary& b) { return b.motion || b.body; });
+  f.vents = !scene.vents.empty();
+  f.outflow = !scene.outflows.empty();
   f.integrator = scene.numerics.integrator;
   return f;
 }
@@ -47,6 +53,7 @@ FieldSet Features::columns() const {
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
   if (stress) s |= field_set(FieldList<Viscosity, Stress>{});
   if (xsph) s |= field_set(FieldList<XsphVelocity>{});
+  if (vents) s |= field_set(FieldList<Inlet>{});
   return s;
 }
 
@@ -66,6 +73,9 @@ std::vector<std::string> Features::names() const {
   if (artificial_viscosity) n.push_back("artificial-viscosity");
   if (xsph) n.push_back("xsph");
   if (contact) n.push_back("contact");
+  if (bodies) n.push_back("moving-bodies");
+  if (vents) n.push_back("vents");
+  if (outflow) n.push_back("outflow");
   n.push_back(integrator == IntegratorKind::leap_frog ? "leap-frog" : "symplectic-euler");
   return n;
 }

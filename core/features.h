@@ -17,6 +17,9 @@ struct Features {
   bool artificial_viscosity = false;
   bool xsph = false;
   bool contact = false;  // walls
+  bool bodies = false;   // walls that move
+  bool vents = false;    // fluid enters
+  bool outflow = false;  // fluid is removed at planes
   IntegratorKind integrator = IntegratorKind::leap_frog;
 
   /// No forces but pressure and artificial viscosity, no heat, no XSPH: the shortest instantiation of the forces pass

@@ -46,6 +46,8 @@ MOLTEN_FIELD(Velocity, VectorField, velocity, "m/s", "velocity at the time of th
 MOLTEN_FIELD(Compression, ScalarField, compression, "1", "density / rest density - 1");
 MOLTEN_FIELD(Temperature, ExactScalar, temperature, "degrees", "temperature");
 
+MOLTEN_FIELD(Inlet, IdScalar, inlet, "1", "number of the vent that still pushes the particle; -1: none");
+
 // What an integrator carries beside it.
 MOLTEN_FIELD(HalfVelocity, VectorField, half_velocity, "m/s", "leap-frog velocity, half a step behind");
 MOLTEN_FIELD(HalfCompression, ScalarField, half_compression, "1", "leap-frog compression, half a step behind");
@@ -76,7 +78,7 @@ template <class... F> struct FieldList { static constexpr int size = sizeof...(F
 using AllFields =
     FieldList<Id, Position, Velocity, Compression, Temperature, HalfVelocity, HalfCompression, PreviousCompressionRate,
               OlderCompressionRate, LocalPosition, LocalTemperature, PressureTerm, Viscosity, Stress, Acceleration,
-              CompressionRate, TemperatureRate, XsphVelocity>;
+              CompressionRate, TemperatureRate, XsphVelocity, Inlet>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

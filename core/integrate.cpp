@@ -7,6 +7,8 @@
 // extrapolated to the velocity that moved them, ρ'^n + (1+β)(ρ'^n − ρ'^{n−1}) − β(ρ'^{n−1} − ρ'^{n−2}), which is stable
 // for 0.6 ≤ β ≤ 1.
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "core/particle_pass.h"
 #include "core/step.h"
@@ -25,12 +27,13 @@ template <int Dim, class Real> class Integrator {
         stretch_(previous_dt > 0 ? dt_ / previous_dt : 0),
         always_collide_(s.features.contact && longest_way() > s.parameters.spacing) {}
 
-  /// Moves one particle; returns the square of its displacement (m²).
-  double advance(std::size_t slot) const {
+  /// Moves one particle; returns the square of its displacement (m²). `kicks`: what bodies give to it is added.
+  double advance(std::size_t slot, std::span<Kick<Dim>> kicks) const {
     if (ids_[slot] == padding_id) return 0;
+    if (inlet_ && inlet_[slot] >= 0) return advance_in_vent(slot);
     Motion<Dim> motion = kicked(slot);
     const Point<Dim> before = motion.position;
-    const bool bounced = collide(slot, motion);
+    const bool bounced = collide(slot, motion, kicks);
     store(slot, motion, bounced);
     advance_compression(slot);
     if (s_.features.heat) temperature_[slot] += dt_ * temperature_rate_[slot];
@@ -38,11 +41,11 @@ template <int Dim, class Real> class Integrator {
   }
 
  private:
-  /// No particle gets further from where it was sorted than this (m).
+  /// No particle gets further from where it was sorted than this (m), and no body nearer to it.
   double longest_way() const {
     const double fastest = std::sqrt(s_.extremes.speed2) + dt_ * std::sqrt(s_.extremes.acceleration2) +
                            std::abs(s_.parameters.xsph) * std::sqrt(s_.extremes.xsph2);
-    return s_.neighbours.displacement() + 2 * fastest * dt_;
+    return s_.neighbours.displacement() + 2 * fastest * dt_ + s_.bodies.way();
   }
 
   Motion<Dim> kicked(std::size_t slot) const {
@@ -60,8 +63,20 @@ template <int Dim, class Real> class Integrator {
     return m;
   }
 
-  bool collide(std::size_t slot, Motion<Dim>& m) const {
-    if (always_collide_ || s_.near_wall[slot / cluster_size]) return s_.contact.move(m, dt_) > 0;
+  /// The vent moves it like a piston; walls do not concern it, and its temperature stays what it entered with.
+  double advance_in_vent(std::size_t slot) const {
+    const Point<Dim> way = s_.vents.way(static_cast<std::size_t>(inlet_[slot]), s_.clock.time, dt_);
+    Motion<Dim> m;
+    for (int d = 0; d < Dim; ++d) m.position[d] = position_[d][slot] + way[d];
+    m.velocity = way / dt_;
+    store(slot, m, true);
+    advance_compression(slot);
+    if (s_.vents.has_left(static_cast<std::size_t>(inlet_[slot]), m.position)) inlet_[slot] = -1;
+    return way.squaredNorm();
+  }
+
+  bool collide(std::size_t slot, Motion<Dim>& m, std::span<Kick<Dim>> kicks) const {
+    if (always_collide_ || s_.near_wall[slot / cluster_size]) return s_.contact.move(m, dt_, kicks) > 0;
     m.position += dt_ * m.rate;
     return false;
   }
@@ -112,6 +127,21 @@ template <int Dim, class Real> class Integrator {
   const Real* compression_rate_ = p_[compression_rate][0];
   double* temperature_ = p_[temperature][0];
   const Real* temperature_rate_ = p_[temperature_rate][0];
+  std::int64_t* inlet_ = p_[inlet][0];  // null without vents
+};
+
+/// What a step has done: the square of the largest displacement (m²), and what bodies have given to particles.
+template <int Dim> struct Moved {
+  double way2 = 0;
+  std::vector<Kick<Dim>> kicks;  // by body
+
+  void join(const Moved& m) {
+    way2 = std::max(way2, m.way2);
+    for (std::size_t k = 0; k < kicks.size(); ++k) {
+      kicks[k].linear += m.kicks[k].linear;
+      kicks[k].angular += m.kicks[k].angular;
+    }
+  }
 };
 
 /// What the pair passes read of one particle, from its state.
@@ -138,16 +168,19 @@ template <int Dim, class Real> class Preparation {
 
 template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   const auto scope = s.timer.scope(s.features.contact ? "integrate and collide" : "integrate");
+  if (s.features.bodies) s.bodies.begin_step(s.contact, s.clock.time, s.clock.dt, s.parameters.gravity);
   const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
   const Preparation<Dim, Real> preparation(s);
-  const double way2 = reduce_slots(
-      s.particles.slots(), 0.0,
-      [&](std::size_t slot, double& largest) {
-        largest = std::max(largest, integrator.advance(slot));
+  const Moved<Dim> moved = reduce_slots(
+      s.particles.slots(), Moved<Dim>{0, std::vector<Kick<Dim>>(s.bodies.count())},
+      [&](std::size_t slot, Moved<Dim>& all) {
+        all.way2 = std::max(all.way2, integrator.advance(slot, all.kicks));
         preparation.of(slot);
       },
-      [](double& a, double b) { a = std::max(a, b); });
-  s.neighbours.moved(std::sqrt(way2));
+      [](Moved<Dim>& a, const Moved<Dim>& b) { a.join(b); });
+  s.neighbours.moved(std::sqrt(moved.way2));
+  if (s.features.vents) s.vents.advance(s.clock.time, s.clock.dt);
+  if (s.features.bodies) s.bodies.end_step(moved.kicks, s.parameters.particle_mass);
 }
 
 template <int Dim, class Real> void prepare(State<Dim, Real>& s) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "core/features.h"
 #include "core/kernel.h"
@@ -29,6 +30,7 @@ template <int Dim> struct Parameters {
   std::optional<double> fixed_dt;  // s
   bool sort_each_step = false;
   Domain<Dim> domain;
+  std::vector<Plane> outflows;
 };
 
 /// What the start of a run is made of: the filled bodies, one entry a particle.
@@ -37,7 +39,12 @@ struct Start {
   double measure = 0;                                     // m³ (2-D: m²) of all bodies
   std::vector<std::array<double, 3>> position, velocity;  // m, m/s
   std::vector<double> temperature;                        // empty without heat
+  std::vector<std::array<double, 3>> vents;               // m; where fluid will enter
+  double vent_speed = 0;                                  // m/s; the fastest that it will
 };
+
+/// The volume that a particle stands for, m³ (2-D: m²).
+double measure_of_particle(const Scene& scene, const Start& start);
 
 template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start& start);
 

@@ -29,7 +29,8 @@ template <class... F> FieldSet field_set(FieldList<F...>) {
 /// Memory on cache-line (large: huge-page) boundaries, zero at first.
 class Buffer {
  public:
-  void resize(std::size_t bytes);  // contents are lost when it has to grow
+  void resize(std::size_t bytes);                 // contents are lost when it has to grow
+  void extend(std::size_t from, std::size_t to);  // bytes; keeps the first `from`, the rest becomes zero
   void* data() const { return data_.get(); }
   std::size_t capacity() const { return capacity_; }
   void swap(Buffer& other) noexcept { std::swap(data_, other.data_), std::swap(capacity_, other.capacity_); }
@@ -64,6 +65,10 @@ template <int Dim, class Real> class Particles {
 
   /// Room for `slots` slots (a multiple of cluster_size); contents are lost. `count` of them are particles.
   void resize(std::size_t slots, std::size_t count);
+
+  /// Adds so many particles at the end, all their fields zero, and padding up to a whole cluster; returns the slot of
+  /// the first. Columns grow by half, so that few calls allocate. The neighbours must be listed anew.
+  std::size_t append(std::size_t count);
 
   std::size_t slots() const { return slots_; }
   std::size_t count() const { return count_; }

@@ -9,7 +9,25 @@
 
 namespace molten {
 
+namespace {
+
+/// Particles beyond an outflow plane become padding; the sort that follows drops it.
+template <int Dim, class Real> void remove_outflow(State<Dim, Real>& s) {
+  const auto x = s.particles[position];
+  const auto ids = s.particles[id][0];
+  for_each_slot(s.particles.slots(), [&](std::size_t slot) {
+    for (const auto& plane : s.parameters.outflows) {
+      double height = 0;
+      for (int d = 0; d < Dim; ++d) height += (x[d][slot] - plane.point[d]) * plane.normal[d];
+      if (height > 0) ids[slot] = padding_id;
+    }
+  });
+}
+
+}  // namespace
+
 template <int Dim, class Real> void step(State<Dim, Real>& s) {
+  if (s.features.vents) emit(s);
   if (s.neighbours.is_due() || s.parameters.sort_each_step) sort_and_list(s);
   if (s.features.stress) find_viscosity(s);
   find_rates(s);
@@ -24,15 +42,17 @@ template <int Dim, class Real> void step(State<Dim, Real>& s) {
 
 template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("sort and list");
+  if (s.features.outflow) remove_outflow(s);
   s.neighbours.rebuild(s.particles);
   mark_near_wall(s);
   prepare(s);
 }
 
-/// A cluster is near a wall if a particle of it may touch one within a spacing of its way.
+/// A cluster is near a wall if a particle of it may touch one within a spacing of its way and a body's.
 template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s) {
   s.near_wall.assign(s.neighbours.clusters(), 0);
   if (!s.features.contact) return;
+  if (s.features.bodies) s.bodies.place(s.contact);
   const auto x = s.particles[position];
   for_each_slot(s.neighbours.clusters(), [&](std::size_t c) {
     for (std::size_t k = c * cluster_size; k < (c + 1) * cluster_size; ++k) {
@@ -66,7 +86,8 @@ template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
   if (p.fixed_dt) {
     limit(*p.fixed_dt, Limit::fixed);
   } else {
-    limit(p.courant_sound * h / (p.eos.sound_speed + std::sqrt(s.extremes.speed2)), Limit::sound);
+    const double fastest = std::max(std::sqrt(s.extremes.speed2), s.features.bodies ? s.bodies.fastest() : 0);
+    limit(p.courant_sound * h / (p.eos.sound_speed + fastest), Limit::sound);
     limit(p.courant_force * std::sqrt(h / (std::sqrt(s.extremes.acceleration2) + 1e-300)), Limit::force);
     // The force of a varying viscosity has two parts that both damp the shortest waves: half the step is stable.
     const double viscous = s.features.stress ? p.courant_viscous / 2 : p.courant_viscous;

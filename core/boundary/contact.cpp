@@ -37,6 +37,12 @@ template <int Dim> void require_planes(const std::vector<Wall<Dim>>& walls) {
       throw Error(ExitCode::geometry, "wall " + std::to_string(w) + ": a plane needs a point and a unit normal");
 }
 
+/// A turning body has set a particle aside, by the bend of its way during the step: the moment of that, too, is shared.
+template <int Dim>
+void set_aside(const Motion<Dim>& m, const Point<Dim>& by, std::int32_t body, std::span<Kick<Dim>> kicks) {
+  if (!kicks.empty()) kicks[body].angular += moment(by, m.velocity);
+}
+
 }  // namespace
 
 template <int Dim> struct Contact<Dim>::Impl {
@@ -198,7 +204,9 @@ template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt, std::
     } else {
       const Pose<Dim> pose = motion.after(now);
       touch.normal = pose.turn * hit.contact.normal;
+      const Point<Dim> straight = m.position + hit.contact.t * d;
       m.position = pose.to_world(hit.start + hit.contact.t * hit.path + skin * hit.contact.normal);
+      set_aside<Dim>(m, m.position - straight, touch.body, kicks);
       touch.velocity = motion.velocity_at(m.position, pose.centre);
     }
     if (hit.contact.t * hit.path.norm() > 4 * skin) touching.clear();
@@ -214,7 +222,9 @@ template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt, std::
   // A body goes on and takes along what it touched last.
   if (const std::int32_t body = touching.last().body; body >= 0) {
     const RigidMotion<Dim>& motion = bodies[body].motion;
+    const Point<Dim> before = m.position;
     m.position = motion.after(dt).to_world(motion.after(now).to_body(m.position));
+    set_aside<Dim>(m, m.position - before, body, kicks);
   }
   return most_bounces;
 }

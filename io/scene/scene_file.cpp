@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "io/scene/scene_motion.h"
 #include "io/scene/scene_sections.h"
 #include "io/scene/scene_shapes.h"
 
@@ -65,7 +66,8 @@ void read_head(const TomlReader& root, Scene& scene) {
 
 // ---- [[boundary]] ----
 
-const TomlReader::Keys boundary_keys = {"inside", "two_sided", "slip", "restitution", "friction", "yield_stress"};
+const TomlReader::Keys boundary_keys = {"inside",   "two_sided",    "slip",   "restitution",
+                                        "friction", "yield_stress", "motion", "body"};
 
 Boundary read_boundary(const TomlReader& keys, int dimensions) {
   Boundary boundary;
@@ -85,6 +87,7 @@ Boundary read_boundary(const TomlReader& keys, int dimensions) {
   if (keys.has("slip") && (boundary.friction || boundary.yield_stress)) {
     keys.fail("slip", "stands beside friction or yield_stress, which say how it slips; keep one of them");
   }
+  read_motion(keys, dimensions, boundary);
   return boundary;
 }
 
@@ -157,7 +160,8 @@ Output read_output(const TomlReader& root) {
 
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
   const TomlDocument document = parse_toml(text, file, overrides);
-  const TomlReader root(document, document.root, "", {"scene", "fluid", "boundary", "run", "output", "numerics"});
+  const TomlReader root(document, document.root, "",
+                        {"scene", "fluid", "boundary", "vent", "outflow", "run", "output", "numerics"});
   Scene scene;
   scene.file = file;
   scene.text = document.text;
@@ -166,6 +170,7 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   for (const TomlReader& keys : root.tables("boundary", with_shape_keys(boundary_keys))) {
     scene.boundaries.push_back(read_boundary(keys, scene.dimensions));
   }
+  read_vents(root, scene);
   scene.run = read_run(root);
   scene.output = read_output(root);
   scene.numerics = read_numerics(root);
