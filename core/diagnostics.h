@@ -21,6 +21,7 @@ struct Diagnostics {
   std::array<double, 3> lower{}, upper{};                                          // m; extent of the particles
   double max_speed = 0;                                                            // m/s
   double max_compression = 0;                                                      // largest |ρ/ρ0 − 1|
+  std::vector<std::array<double, 3>> bodies;                                       // m; centres of those that move
 };
 
 /// The same bits for any thread count.

@@ -1,5 +1,7 @@
 #include "core/features.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/runge_kutta.h"
 
@@ -41,6 +43,11 @@ void require_sense(const Scene& scene) {
            "without density_filter, gradient_correction or internal_energy; leave one of the two out");
   if (n.sleep && n.sleep->temperature_rate && !scene.fluid.heat)
     refuse(scene, "numerics.sleep.temperature_rate: this scene has no [fluid.heat]; leave the key out or add heat");
+  const bool moves =
+      std::any_of(scene.boundaries.begin(), scene.boundaries.end(), [](const Boundary& b) { return b.motion || b.body; });
+  if (!two_step && (moves || !scene.vents.empty() || !scene.outflows.empty()))
+    refuse(scene, std::string("numerics.integrator: ") + name_of(n.integrator) +
+                      " knows no walls that move, vents or outflow; use leap_frog or symplectic_euler");
   for (int d = 0; d < scene.dimensions; ++d)
     if (scene.periodic[d] && !scene.domain)
       refuse(scene, "scene.periodic: a periodic axis needs scene.domain for its length");
@@ -90,6 +97,10 @@ Features features_of(const Scene& scene) {
   f.wall_support = f.contact && scene.numerics.wall_support;
   f.density_diffusion = scene.numerics.density_diffusion > 0;
   f.sleep = scene.numerics.sleep.has_value();
+  f.bodies = std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
+                         [](const Boundary& b) { return b.motion || b.body; });
+  f.vents = !scene.vents.empty();
+  f.outflow = !scene.outflows.empty();
   f.integrator = scene.numerics.integrator;
   if ((f.wall_support || f.density_diffusion) && (f.gradient_correction || f.any_seldom()))
     refuse(scene, std::string("numerics.") + (f.wall_support ? "wall_support" : "density_diffusion") +
@@ -123,6 +134,7 @@ FieldSet Features::columns() const {
   if (sleep) s |= field_set(FieldList<RestTime>{});
   if (sleep && heat) s |= field_set(FieldList<HeatRestTime>{});
   if (sleep && heat && stress) s |= field_set(FieldList<RestTemperature>{});
+  if (vents) s |= field_set(FieldList<Inlet>{});
   return s;
 }
 
@@ -156,6 +168,9 @@ std::vector<std::string> Features::names() const {
   if (shifting) n.push_back("shifting");
   if (contact) n.push_back("contact");
   if (wall_support) n.push_back("wall-support");
+  if (bodies) n.push_back("moving-bodies");
+  if (vents) n.push_back("vents");
+  if (outflow) n.push_back("outflow");
   if (density_diffusion) n.push_back("density-diffusion");
   if (sleep) n.push_back("sleep");
   n.push_back(name_of(integrator));

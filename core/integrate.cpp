@@ -7,6 +7,8 @@
 // extrapolated to the velocity that moved them, ρ'^n + (1+β)(ρ'^n − ρ'^{n−1}) − β(ρ'^{n−1} − ρ'^{n−2}), which is stable
 // for 0.6 ≤ β ≤ 1.
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "core/energy_bound.h"
 #include "core/mover.h"
@@ -28,12 +30,13 @@ template <int Dim, class Real> class Integrator {
         stretch_(previous_dt > 0 ? dt_ / previous_dt : 0),
         mover_(s) {}
 
-  /// Moves one particle; returns the square of its displacement (m²).
-  double advance(std::size_t slot) const {
+  /// Moves one particle; returns the square of its displacement (m²). `kicks`: what bodies give to it is added.
+  double advance(std::size_t slot, std::span<Kick<Dim>> kicks) const {
     if (ids_[slot] == padding_id) return 0;
+    if (inlet_ && inlet_[slot] >= 0) return advance_in_vent(slot);
     Motion<Dim> motion = kicked(slot);
     const Point<Dim> before = motion.position;
-    const bool bounced = mover_.move(slot, motion);
+    const bool bounced = mover_.move(slot, motion, kicks);
     store(slot, motion, bounced);
     advance_compression(slot);
     if (s_.features.internal_energy) internal_energy_[slot] += kick_ * internal_energy_rate_[slot];
@@ -69,6 +72,18 @@ template <int Dim, class Real> class Integrator {
       if (s_.parameters.xsph_form == Xsph::Form::velocity) m.velocity[d] += correction;
     }
     return m;
+  }
+
+  /// The vent moves it like a piston; walls do not concern it, and its temperature stays what it entered with.
+  double advance_in_vent(std::size_t slot) const {
+    const Point<Dim> way = s_.vents.way(static_cast<std::size_t>(inlet_[slot]), s_.clock.time, dt_);
+    Motion<Dim> m;
+    for (int d = 0; d < Dim; ++d) m.position[d] = position_[d][slot] + way[d];
+    m.velocity = way / dt_;
+    store(slot, m, true);
+    advance_compression(slot);
+    if (s_.vents.has_left(static_cast<std::size_t>(inlet_[slot]), m.position)) inlet_[slot] = -1;
+    return way.squaredNorm();
   }
 
   void store(std::size_t slot, const Motion<Dim>& m, bool bounced) const {
@@ -123,6 +138,21 @@ template <int Dim, class Real> class Integrator {
   Real* rest_time_ = p_[rest_time][0];
   Real* heat_rest_time_ = p_[heat_rest_time][0];
   Real* rest_temperature_ = p_[rest_temperature][0];
+  std::int64_t* inlet_ = p_[inlet][0];  // null without vents
+};
+
+/// What a step has done: the square of the largest displacement (m²), and what bodies have given to particles.
+template <int Dim> struct Moved {
+  double way2 = 0;
+  std::vector<Kick<Dim>> kicks;  // by body
+
+  void join(const Moved& m) {
+    way2 = std::max(way2, m.way2);
+    for (std::size_t k = 0; k < kicks.size(); ++k) {
+      kicks[k].linear += m.kicks[k].linear;
+      kicks[k].angular += m.kicks[k].angular;
+    }
+  }
 };
 
 /// What the pair passes read of one particle, from its state.
@@ -152,19 +182,22 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   const IntegratorKind kind = s.features.integrator;
   if (kind == IntegratorKind::energy_bounded_euler) return integrate_energy_bounded(s);
   if (kind != IntegratorKind::leap_frog && kind != IntegratorKind::symplectic_euler) return finish_stages(s);
+  if (s.features.bodies) s.bodies.begin_step(s.contact, s.clock.time, s.clock.dt, s.parameters.gravity);
   const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
   const Preparation<Dim, Real> preparation(s);
   const std::size_t first = s.neighbours.first_slot(Block::active);
-  const double way2 = reduce_slots(
-      s.particles.slots() - first, 0.0,
-      [&](std::size_t k, double& largest) {
-        largest = std::max(largest, integrator.advance(first + k));
+  const Moved<Dim> moved = reduce_slots(
+      s.particles.slots() - first, Moved<Dim>{0, std::vector<Kick<Dim>>(s.bodies.count())},
+      [&](std::size_t k, Moved<Dim>& all) {
+        all.way2 = std::max(all.way2, integrator.advance(first + k, all.kicks));
         preparation.of(first + k);
       },
-      [](double& a, double b) { a = std::max(a, b); });
-  s.neighbours.moved(std::sqrt(way2));
+      [](Moved<Dim>& a, const Moved<Dim>& b) { a.join(b); });
+  s.neighbours.moved(std::sqrt(moved.way2));
   s.sleep.warm_time += s.clock.dt;
-  s.sleep.travel += (s.parameters.eos.sound_speed + std::sqrt(s.extremes.speed2)) * s.clock.dt;
+  s.sleep.travel += (s.parameters.eos.sound_speed + std::max(std::sqrt(s.extremes.speed2), s.bodies.fastest())) * s.clock.dt;
+  if (s.features.vents) s.vents.advance(s.clock.time, s.clock.dt);
+  if (s.features.bodies) s.bodies.end_step(moved.kicks, s.parameters.particle_mass);
 }
 
 template <int Dim, class Real> void prepare(State<Dim, Real>& s, std::size_t first) {

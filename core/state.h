@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bodies.h"
 #include "core/boundary/contact.h"
 #include "core/boundary/wall_support.h"
 #include "core/features.h"
@@ -13,6 +14,7 @@
 #include "core/particles.h"
 #include "core/sleep.h"
 #include "core/timer.h"
+#include "core/vents.h"
 
 namespace molten {
 
@@ -42,6 +44,8 @@ template <int Dim, class Real> struct State {
   Features features;  // fixed for the run
   Parameters<Dim> parameters;
   Contact<Dim> contact;
+  Bodies<Dim> bodies;
+  Vents<Dim> vents;
   Particles<Dim, Real> particles;
   Neighbours<Dim, Real> neighbours;     // good between sorts
   std::vector<std::uint8_t> near_wall;  // by cluster: a wall may be met before the next sort
@@ -61,6 +65,6 @@ template <int Dim, class Real> struct State {
 /// The start of a run, sorted and listed.
 template <int Dim, class Real>
 State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Contact<Dim> contact,
-                            const Start& start);
+                            const Start& start, Bodies<Dim> bodies = {}, Vents<Dim> vents = {});
 
 }  // namespace molten

@@ -18,7 +18,19 @@ template <int Dim> void add_walls(Hash& hash, const Scene& scene, double spacing
     for (const double number :
          {wall.skin.temperature.value_or(1e300), wall.skin.layer_diffusivity, wall.skin.layer_thickness})
       hash.add(number);
+    if (wall.response.grip) hash.add(wall.response.grip->friction), hash.add(wall.response.grip->hold);
+    hash.add(wall.two_sided);
   }
+}
+
+void add_motion(Hash& hash, const Boundary& boundary) {
+  if (boundary.motion) {
+    hash.add(boundary.motion->velocity);
+    hash.add(boundary.motion->spin);
+    if (boundary.motion->centre) hash.add(*boundary.motion->centre);
+    hash.add(boundary.motion->key_frames.data(), boundary.motion->key_frames.size());
+  }
+  if (boundary.body) hash.add(boundary.body->density), hash.add(boundary.body->velocity), hash.add(boundary.body->spin);
 }
 
 void add_numerics(Hash& hash, const Numerics& n) {
@@ -60,6 +72,15 @@ std::string fingerprint(const Scene& scene, const Start& start) {
   }
   if (scene.domain) hash.add(scene.domain->min), hash.add(scene.domain->max), hash.add(scene.periodic);
   scene.dimensions == 2 ? add_walls<2>(hash, scene, start.spacing) : add_walls<3>(hash, scene, start.spacing);
+  for (const Boundary& boundary : scene.boundaries) add_motion(hash, boundary);
+  for (const Vent& vent : scene.vents) {
+    hash.add(vent.centre);
+    hash.add(vent.normal);
+    hash.add(vent.radius);
+    hash.add(vent.table.data(), vent.table.size());
+  }
+  hash.add(start.vents.data(), start.vents.size());
+  for (const Plane& plane : scene.outflows) hash.add(plane.point), hash.add(plane.normal);
   add_numerics(hash, scene.numerics);
   return hash.text();
 }

@@ -11,6 +11,8 @@
 #include "core/diagnostics.h"
 #include "core/step.h"
 #include "io/geometry/assemble.h"
+#include "io/geometry/bodies.h"
+#include "io/geometry/vents.h"
 #include "io/geometry/obj_file.h"
 #include "io/hdf5/checkpoint.h"
 #include "io/hdf5/frames.h"
@@ -61,6 +63,8 @@ template <int Dim, class Real> class Runner {
     fresh_ = false;
   }
 
+  std::size_t particles() const { return state_.particles.count(); }
+
   ExitCode run() {
     begin();
     ExitCode code = ExitCode::done;
@@ -82,7 +86,7 @@ template <int Dim, class Real> class Runner {
 
  private:
   void begin() {
-    series_.emplace(folder_ / "series.csv", fresh_ ? 0 : ledger_.rows);
+    series_.emplace(folder_ / "series.csv", fresh_ ? 0 : ledger_.rows, state_.bodies.count());
     if (fresh_) {
       const Diagnostics d = diagnose(state_);
       ledger_.initial_energy = d.kinetic_energy + d.potential_energy;
@@ -226,9 +230,15 @@ template <int Dim, class Real>
 Runner<Dim, Real> prepare_run(const Scene& scene, const std::filesystem::path& folder, const Features& features,
                               const Start& start) {
   const Parameters<Dim> parameters = parameters_of<Dim>(scene, start);
-  Contact<Dim> contact(build_walls<Dim>(scene, start.spacing), parameters.contact_radius, parameters.support_radius);
+  std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
+  Bodies<Dim> bodies = take_bodies(scene, walls);
+  Contact<Dim> contact(std::move(walls), parameters.contact_radius, parameters.support_radius);
+  bodies.place(contact);
   require_no_overlap(scene, start, contact);
-  return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(contact), start),
+  require_open_vents(scene, start, contact);
+  return Runner<Dim, Real>(scene, folder,
+                           make_state<Dim, Real>(features, parameters, std::move(contact), start, std::move(bodies),
+                                               build_vents<Dim>(scene, start, parameters.support_radius)),
                            fingerprint(scene, start));
 }
 
@@ -249,7 +259,7 @@ void make_folder(const std::filesystem::path& folder, bool overwrite) {
                                      "`, choose another folder with -o, or replace it with --overwrite");
   if (holds_run)
     for (const char* name : {"frames", "checkpoints", "frames.hdf.series", "series.csv", "summary.json",
-                             "manifest.json", "scene.toml", "walls.obj", "pictures"})
+                             "manifest.json", "scene.toml", "walls.obj", "bodies", "pictures"})
       fs::remove_all(folder / name, error);
   fs::create_directories(folder, error);
   if (error) throw Error(ExitCode::files, folder.string() + ": cannot create the output folder: " + error.message());
@@ -262,6 +272,11 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary);
   out << text;
   if (!out.flush()) throw Error(ExitCode::files, file.string() + ": cannot write; check the disk");
+}
+
+void write_bodies(const std::filesystem::path& folder, const std::vector<TriangleMesh>& bodies) {
+  if (!bodies.empty()) std::filesystem::create_directories(folder);
+  for (std::size_t k = 0; k < bodies.size(); ++k) write_obj(folder / fmt::format("{}.obj", k), bodies[k]);
 }
 
 void set_threads(int threads) {
@@ -280,9 +295,10 @@ ExitCode run_scene(const Scene& scene, const RunOptions& options) {
     make_folder(options.folder, options.overwrite);
     write_text(options.folder / "scene.toml", scene.text);
     write_obj(options.folder / "walls.obj", picture_of_walls(scene, start));
+    write_bodies(options.folder / "bodies", pictures_of_bodies(scene, start));
     write_manifest(options.folder, scene, features, fingerprint(scene, start));
     fmt::print(stderr, "{}: {} particles, spacing {:.4g} m, {}-D, {} precision, {} threads, into {}\n",
-               scene.title.empty() ? scene.file : scene.title, start.position.size(), start.spacing, Dim,
+               scene.title.empty() ? scene.file : scene.title, runner.particles(), start.spacing, Dim,
                sizeof(Real) == 4 ? "single" : "double", omp_get_max_threads(), options.folder.string());
     catch_stop_signals();
     return runner.run();

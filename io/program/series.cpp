@@ -14,7 +14,13 @@ constexpr const char* header =
     "time_s,step,dt_s,limit,particles,kinetic_energy_J,potential_energy_J,heat_kgK,momentum_x_kgm/s,momentum_y_kgm/s,"
     "momentum_z_kgm/s,lower_x_m,lower_y_m,lower_z_m,upper_x_m,upper_y_m,upper_z_m,max_speed_m/"
     "s,max_compression,internal_energy_J,"
-    "least_energy_share,mean_energy_share,largest_energy_share\n";
+    "least_energy_share,mean_energy_share,largest_energy_share";
+
+std::string header_with(std::size_t bodies) {
+  std::string all = header;
+  for (std::size_t k = 0; k < bodies; ++k) all += fmt::format(",body{0}_x_m,body{0}_y_m,body{0}_z_m", k);
+  return all + '\n';
+}
 
 std::vector<std::string> first_rows(const std::filesystem::path& file, std::int64_t count) {
   std::vector<std::string> rows;
@@ -27,12 +33,12 @@ std::vector<std::string> first_rows(const std::filesystem::path& file, std::int6
 
 }  // namespace
 
-Series::Series(const std::filesystem::path& file, std::int64_t keep) : file_(file) {
+Series::Series(const std::filesystem::path& file, std::int64_t keep, std::size_t bodies) : file_(file) {
   const std::vector<std::string> kept = first_rows(file, keep);
   const std::filesystem::path part = file.string() + ".tmp";
   {
     std::ofstream fresh(part, std::ios::trunc);
-    fresh << header;
+    fresh << header_with(bodies);
     for (const std::string& row : kept) fresh << row << '\n';
     if (!fresh.flush())
       throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
@@ -44,10 +50,12 @@ Series::Series(const std::filesystem::path& file, std::int64_t keep) : file_(fil
 void Series::add(const Clock& c, const Diagnostics& d) {
   out_ << fmt::format(
       "{:.9g},{},{:.6g},{},{},{:.9g},{:.9g},{:.12g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},"
-      "{:.6g},{:.6g},{:.6g},{:.9g},{:.6g},{:.6g},{:.6g}\n",
+      "{:.6g},{:.6g},{:.6g},{:.9g},{:.6g},{:.6g},{:.6g}",
       c.time, c.step, c.dt, name_of(c.limit), d.particles, d.kinetic_energy, d.potential_energy, d.heat, d.momentum[0],
       d.momentum[1], d.momentum[2], d.lower[0], d.lower[1], d.lower[2], d.upper[0], d.upper[1], d.upper[2], d.max_speed,
       d.max_compression, d.internal_energy, d.least_energy_share, d.mean_energy_share, d.largest_energy_share);
+  for (const auto& x : d.bodies) out_ << fmt::format(",{:.9g},{:.9g},{:.9g}", x[0], x[1], x[2]);
+  out_ << '\n';
   if (!out_.flush()) throw Error(ExitCode::files, file_.string() + ": cannot write; check the disk");
 }
 
