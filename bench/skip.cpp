@@ -78,7 +78,7 @@ void compare(benchmark::State& bench, const Comparison& c) {
   const Step steps[3] = {c.minimal, step<3, float>, step<3, float>};
   for (int k = 0; k < 20; ++k)
     for (int which = 0; which < 3; ++which) steps[which](states[which]);
-  if (const double way = apart(states[0], states[1]); !(way < 1e-3))
+  if (const double way = apart(states[0], states[1]); !(way < 2e-5))
     return bench.SkipWithError(fmt::format("the minimal step is off by {} spacings", way).c_str());
   std::vector<double> seconds[3];
   int turn = 0;

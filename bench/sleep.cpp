@@ -194,6 +194,10 @@ template <int Dim, class Real> void compare(int length, double end) {
 }  // namespace molten::bench
 
 int main(int argc, char** argv) {
+  if (argc > 4 || (argc > 1 && std::string(argv[1]) != "2" && std::string(argv[1]) != "3")) {
+    fmt::print(stderr, "usage: sleep [2|3 [LENGTH [END]]]: dimensions, spacings along the pool, simulated seconds\n");
+    return 2;
+  }
   const int dim = argc > 1 ? std::stoi(argv[1]) : 2;
   const int length = argc > 2 ? std::stoi(argv[2]) / 12 * 12 : dim == 2 ? 4800 : 2400;
   const double end = argc > 3 ? std::stod(argv[3]) : 0.2;

@@ -12,21 +12,20 @@
 
 namespace molten {
 
-namespace {
-
-template <int Dim, class Real> std::vector<SnapshotBody> bodies_of(const State<Dim, Real>& s) {
-  std::vector<SnapshotBody> bodies(s.bodies.count());
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    const Pose<Dim>& pose = s.bodies.motion(k).start;
+template <int Dim> std::vector<SnapshotBody> snapshots_of(const Bodies<Dim>& bodies) {
+  std::vector<SnapshotBody> shots(bodies.count());
+  for (std::size_t k = 0; k < shots.size(); ++k) {
+    const Pose<Dim>& pose = bodies.motion(k).start;
     for (int a = 0; a < Dim; ++a) {
-      bodies[k].centre[a] = pose.centre[a];
-      for (int b = 0; b < Dim; ++b) bodies[k].turn[3 * a + b] = pose.turn(a, b);
+      shots[k].centre[a] = pose.centre[a];
+      for (int b = 0; b < Dim; ++b) shots[k].turn[3 * a + b] = pose.turn(a, b);
     }
   }
-  return bodies;
+  return shots;
 }
 
-}  // namespace
+template std::vector<SnapshotBody> snapshots_of(const Bodies<2>&);
+template std::vector<SnapshotBody> snapshots_of(const Bodies<3>&);
 
 template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
   const Particles<Dim, Real>& p = s.particles;
@@ -83,7 +82,7 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
   total.asleep = s.sleep.asleep;
   for (int k = 0; k < 3; ++k)
     if (k >= Dim || total.particles == 0) total.lower[k] = total.upper[k] = 0;
-  for (const SnapshotBody& body : bodies_of(s)) total.bodies.push_back(body.centre);
+  for (const SnapshotBody& body : snapshots_of(s.bodies)) total.bodies.push_back(body.centre);
   return total;
 }
 
@@ -157,7 +156,7 @@ Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>
   }
   for (const std::string& name : fields.empty() ? available_fields(s.features) : fields)
     shot.fields.push_back(read_field(s, name, std::span<const std::uint32_t>(slots)));
-  shot.bodies = bodies_of(s);
+  shot.bodies = snapshots_of(s.bodies);
   return shot;
 }
 

@@ -31,6 +31,9 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s);
 template <int Dim, class Real>
 Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>& fields);
 
+/// Where the bodies are.
+template <int Dim> std::vector<SnapshotBody> snapshots_of(const Bodies<Dim>& bodies);
+
 /// Names of what a snapshot of this run can hold.
 std::vector<std::string> available_fields(const Features& features);
 /// Throws Error(usage) for a name that is none of them.

@@ -43,8 +43,8 @@ void require_sense(const Scene& scene) {
            "without density_filter, gradient_correction or internal_energy; leave one of the two out");
   if (n.sleep && n.sleep->temperature_rate && !scene.fluid.heat)
     refuse(scene, "numerics.sleep.temperature_rate: this scene has no [fluid.heat]; leave the key out or add heat");
-  const bool moves =
-      std::any_of(scene.boundaries.begin(), scene.boundaries.end(), [](const Boundary& b) { return b.motion || b.body; });
+  const bool moves = std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
+                                 [](const Boundary& b) { return b.motion || b.body; });
   if (!two_step && (moves || !scene.vents.empty() || !scene.outflows.empty()))
     refuse(scene, std::string("numerics.integrator: ") + name_of(n.integrator) +
                       " knows no walls that move, vents or outflow; use leap_frog or symplectic_euler");

@@ -195,7 +195,8 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
       [](Moved<Dim>& a, const Moved<Dim>& b) { a.join(b); });
   s.neighbours.moved(std::sqrt(moved.way2));
   s.sleep.warm_time += s.clock.dt;
-  s.sleep.travel += (s.parameters.eos.sound_speed + std::max(std::sqrt(s.extremes.speed2), s.bodies.fastest())) * s.clock.dt;
+  s.sleep.travel +=
+      (s.parameters.eos.sound_speed + std::max(std::sqrt(s.extremes.speed2), s.bodies.fastest())) * s.clock.dt;
   if (s.features.vents) s.vents.advance(s.clock.time, s.clock.dt);
   if (s.features.bodies) s.bodies.end_step(moved.kicks, s.parameters.particle_mass);
 }

@@ -51,14 +51,14 @@ template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
 }
 
 template <int Dim, class Real>
-State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Contact<Dim> contact,
-                            const Start& start, Bodies<Dim> bodies, Vents<Dim> vents) {
+State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Surroundings<Dim> around,
+                            const Start& start) {
   State<Dim, Real> s{
       features,
       parameters,
-      std::move(contact),
-      std::move(bodies),
-      std::move(vents),
+      std::move(around.contact),
+      std::move(around.bodies),
+      std::move(around.vents),
       Particles<Dim, Real>(features.columns()),
       Neighbours<Dim, Real>({parameters.spacing, parameters.support_radius, parameters.skin}, parameters.domain),
       {},
@@ -95,10 +95,9 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
   return s;
 }
 
-#define MOLTEN_INSTANTIATE(Dim, Real)                                                                       \
-  template struct State<Dim, Real>;                                                                         \
-  template State<Dim, Real> make_state(const Features&, const Parameters<Dim>&, Contact<Dim>, const Start&, \
-                                       Bodies<Dim>, Vents<Dim>);
+#define MOLTEN_INSTANTIATE(Dim, Real) \
+  template struct State<Dim, Real>;   \
+  template State<Dim, Real> make_state(const Features&, const Parameters<Dim>&, Surroundings<Dim>, const Start&);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)
 MOLTEN_INSTANTIATE(3, float)

@@ -40,6 +40,16 @@ struct Extremes {
   bool finite = true;
 };
 
+/// What surrounds the fluid.
+template <int Dim> struct Surroundings {
+  Surroundings(Contact<Dim> walls, Bodies<Dim> moving = {}, Vents<Dim> open = {})
+      : contact(std::move(walls)), bodies(std::move(moving)), vents(std::move(open)) {}
+
+  Contact<Dim> contact;
+  Bodies<Dim> bodies;
+  Vents<Dim> vents;
+};
+
 template <int Dim, class Real> struct State {
   Features features;  // fixed for the run
   Parameters<Dim> parameters;
@@ -64,7 +74,7 @@ template <int Dim, class Real> struct State {
 
 /// The start of a run, sorted and listed.
 template <int Dim, class Real>
-State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Contact<Dim> contact,
-                            const Start& start, Bodies<Dim> bodies = {}, Vents<Dim> vents = {});
+State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Surroundings<Dim> around,
+                            const Start& start);
 
 }  // namespace molten

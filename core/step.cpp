@@ -16,6 +16,7 @@ bool is_multiple(std::int64_t step, std::int64_t every) { return step > 0 && ste
 
 /// Active particles beyond an outflow plane become padding; the sort that follows drops it.
 template <int Dim, class Real> void remove_outflow(State<Dim, Real>& s) {
+  if (s.neighbours.clusters() == 0) return;  // never sorted yet
   const auto x = s.particles[position];
   const auto ids = s.particles[id][0];
   const std::size_t first = s.neighbours.first_slot(Block::active);

@@ -120,8 +120,8 @@ template <int Dim, class Real> void insert_layer(State<Dim, Real>& s, std::size_
   const std::size_t count = patch.offsets.size(), first = p.append(count);
   const std::int64_t first_id = s.vents.take_ids(count);
   const double time = s.clock.time;
-  constexpr double moment = 1e-9;  // s; short enough for the speed at `time`
-  const Point<Dim> v = s.vents.way(vent, time, moment) / moment;
+  constexpr double instant = 1e-9;  // s; short enough for the speed at `time`
+  const Point<Dim> v = s.vents.way(vent, time, instant) / instant;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t slot = first + k;
     p[id][0][slot] = first_id + static_cast<std::int64_t>(k);

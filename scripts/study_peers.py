@@ -36,7 +36,8 @@ def solve(example, options, folder):
     took = re.search(r"Run took: ([0-9.]+)", done.stdout)
     result = Path(folder) / "results.npz"
     if done.returncode != 0 or not took or not result.exists():
-        raise RuntimeError((done.stderr.strip() or done.stdout.strip()).splitlines()[-1])
+        said = (done.stderr.strip() or done.stdout.strip() or "nothing").splitlines()[-1]
+        raise RuntimeError(f"{example} ended with exit code {done.returncode}, saying: {said}")
     return float(took.group(1)), numpy.load(result)
 
 

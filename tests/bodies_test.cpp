@@ -183,7 +183,7 @@ template <int Dim> struct Momentum {
 
   void add(double mass, const Point<Dim>& x, const Point<Dim>& v) {
     linear += mass * v;
-    angular += mass * moment(x, v);
+    angular += mass * moment_of(x, v);
   }
 };
 
@@ -278,7 +278,7 @@ TYPED_TEST(FreeBodyInFluid, ImpactConservesMomentumToAMillionth) {
   features.contact = features.bodies = true;
   const Start start = particle_sets::start_of(scene, particle_sets::cube<dim>(12, spacing), spacing);
   auto s = make_state<dim, Real>(features, parameters_of<dim>(scene, start),
-                                 Contact<dim>({wall}, spacing / 2, 2.6 * spacing), start, Bodies<dim>({body}));
+                                 {Contact<dim>({wall}, spacing / 2, 2.6 * spacing), Bodies<dim>({body})}, start);
   const Momentum<dim> before = momentum_of(s);
   for (int k = 0; k < 300; ++k) step(s);
   const Momentum<dim> after = momentum_of(s);

@@ -373,6 +373,27 @@ TEST(Contact, SignedDistance) {
   EXPECT_NEAR(contact.signed_distance({50, 0, 0}, 100), 49, 1e-12);
 }
 
+/// Falls onto a belt and is looked at after the impact.
+Point<3> after_a_belt(Response response, const Point<3>& belt, const Point<3>& v) {
+  auto wall = plane<3>({0, 0, 0}, {0, 0, 1}, response);
+  wall.skin.velocity = belt;
+  const auto contact = contact_with<3>({wall});
+  auto m = motion<3>({0, 0, 2 * radius}, v);
+  EXPECT_EQ(contact.move(m, 1), 1);
+  return m.velocity;
+}
+
+TEST(Contact, ABeltGivesItsVelocityAlongItself) {
+  const Point<3> v(1, 0, -1);
+  EXPECT_LT((after_a_belt({0.5, 0}, {3, 2, 0}, v) - Point<3>(3, 2, 0.5)).norm(), 1e-12) << "no slip, on the belt";
+  EXPECT_LT((after_a_belt({0.5, 1}, {3, 2, 0}, v) - Point<3>(1, 0, 0.5)).norm(), 1e-12) << "free slip";
+  EXPECT_LT((after_a_belt({0.5, 0.25}, {3, 2, 0}, v) - Point<3>(2.5, 1.5, 0.5)).norm(), 1e-12);
+  EXPECT_LT((after_a_belt({0.5, 0}, {3, 2, -7}, v) - Point<3>(3, 2, 0.5)).norm(), 1e-12)
+      << "the belt itself stays where it is";
+  // Friction acts on the velocity relative to the belt's, (−4, 0): the impulse is 1.5, a quarter of it drags.
+  EXPECT_LT((after_a_belt({0.5, 0, Response::Grip{0.25, 0}}, {5, 0, 0}, v) - Point<3>(1.375, 0, 0.5)).norm(), 1e-12);
+}
+
 TEST(Contact, MayTouchNeverLies) {
   Random<3> random(4);
   const auto contact = contact_with<3>(

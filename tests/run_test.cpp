@@ -89,14 +89,14 @@ std::string full_scene(int dimensions, const std::string& precision, const std::
   const bool support = integrator == "symplectic_euler";
   const std::string moving =
       !two_step || support ? ""
-      : flat ? "[[boundary]]\nsphere = { center = [0.36, 0.2], radius = 0.04 }\n"
-               "motion = { velocity = [-1.0, 0.5], spin = 90 }\nfriction = 0.3\n[[boundary]]\n"
-               "sphere = { center = [0.1, 0.4], radius = 0.06 }\n"
-               "body = { density = 2000, velocity = [0, -2], spin = 100 }\n"
-             : "[[boundary]]\nsphere = { center = [0.28, 0.1, 0.15], radius = 0.04 }\n"
-               "motion = { velocity = [-1.0, 0, 0.5], spin = [0, 90, 0] }\nfriction = 0.3\n[[boundary]]\n"
-               "sphere = { center = [0.1, 0.1, 0.3], radius = 0.06 }\n"
-               "body = { density = 2000, velocity = [0, 0, -2], spin = [100, 0, 0] }\n";
+      : flat               ? "[[boundary]]\nsphere = { center = [0.36, 0.2], radius = 0.04 }\n"
+                             "motion = { velocity = [-1.0, 0.5], spin = 90 }\nfriction = 0.3\n[[boundary]]\n"
+                             "sphere = { center = [0.1, 0.4], radius = 0.06 }\n"
+                             "body = { density = 2000, velocity = [0, -2], spin = 100 }\n"
+                           : "[[boundary]]\nsphere = { center = [0.28, 0.1, 0.15], radius = 0.04 }\n"
+                             "motion = { velocity = [-1.0, 0, 0.5], spin = [0, 90, 0] }\nfriction = 0.3\n[[boundary]]\n"
+                             "sphere = { center = [0.1, 0.1, 0.3], radius = 0.06 }\n"
+                             "body = { density = 2000, velocity = [0, 0, -2], spin = [100, 0, 0] }\n";
   const std::string vents =
       !two_step ? ""
       : flat    ? "[[vent]]\ndisc = { centre = [0.7, 0.2], normal = [1, -1], radius = 0.05 }\nrate = 0.2\n"

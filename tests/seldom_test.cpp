@@ -25,6 +25,7 @@ template <int Dim, class Real> State<Dim, Real> random_block(const Scene& scene)
     for (int d = 0; d < Dim && s.particles.has(half_velocity); ++d)
       s.particles[half_velocity][d][k] = s.particles[velocity][d][k];
     s.particles[compression][0][k] = Real(0.05 * of(random));
+    if (s.particles.has(temperature)) s.particles[temperature][0][k] = 20 + 10 * of(random);
   });
   prepare(s);
   return s;
@@ -158,11 +159,11 @@ TYPED_TEST(SeldomOf, TheSeldomPassHasWhatTheOthersHave) {
     find_all_rates(b);
     for_each_particle(a.particles, [&](std::size_t k, const auto&) {
       for (int d = 0; d < Dim; ++d) {
-        EXPECT_NEAR(a.particles[acceleration][d][k], b.particles[acceleration][d][k], 1000 * digits<Real>);
+        EXPECT_NEAR(a.particles[acceleration][d][k], b.particles[acceleration][d][k], 50 * digits<Real>);
         EXPECT_NEAR(a.particles[xsph_velocity][d][k], b.particles[xsph_velocity][d][k], digits<Real>);
       }
       EXPECT_NEAR(a.particles[compression_rate][0][k], b.particles[compression_rate][0][k], 100 * digits<Real>);
-      EXPECT_NEAR(a.particles[temperature_rate][0][k], b.particles[temperature_rate][0][k], digits<Real>);
+      EXPECT_NEAR(a.particles[temperature_rate][0][k], b.particles[temperature_rate][0][k], 50 * digits<Real>);
     });
   }
 }

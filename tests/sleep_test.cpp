@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <cstring>
 #include <map>
 
 #include "core/diagnostics.h"
 #include "core/error.h"
 #include "tests/clouds.h"
+#include "tests/memory_archive.h"
 
 namespace molten {
 namespace {
@@ -129,7 +129,6 @@ TYPED_TEST(SleepOf, TakesTheEnergyOfWhatFallsAsleepAndNoMore) {
   EXPECT_EQ(before, by_id(s, position, 0));
 }
 
-/// The slab's right end has felt nothing, its left end has been hit.
 TYPED_TEST(SleepOf, ADropWakesWhatItHits) {
   MOLTEN_FLAVOUR;
   Scene scene = sleepy_scene(Dim);
@@ -224,38 +223,6 @@ TYPED_TEST(SleepOf, WhatMeltsWakes) {
   EXPECT_LT(change, 7);
 }
 
-/// Keeps what is archived in memory.
-class MemoryArchive : public Archive {
- public:
-  bool loading() const override { return loads; }
-  void value(std::string_view name, double& v) override { array(name, NumberType::f64, &v, 1); }
-  void value(std::string_view name, std::int64_t& v) override { array(name, NumberType::i64, &v, 1); }
-  void array(std::string_view name, NumberType type, void* data, std::size_t count) override {
-    static const std::map<NumberType, std::size_t> sizes{
-        {NumberType::f32, 4}, {NumberType::i32, 4}, {NumberType::u32, 4}, {NumberType::i8, 1}, {NumberType::u8, 1}};
-    const std::size_t bytes = count * (sizes.contains(type) ? sizes.at(type) : 8);
-    auto& kept = arrays[std::string(name)];
-    if (!loads) {
-      kept.resize(bytes), counts[std::string(name)] = count;
-      if (bytes > 0) std::memcpy(kept.data(), data, bytes);
-    } else if (bytes > 0) {
-      ASSERT_EQ(kept.size(), bytes) << name;
-      std::memcpy(data, kept.data(), bytes);
-    }
-  }
-  std::size_t stored_count(std::string_view name) const override { return counts.at(std::string(name)); }
-
-  bool loads = false;
-  std::map<std::string, std::vector<unsigned char>> arrays;
-  std::map<std::string, std::size_t> counts;
-};
-
-template <int Dim, class Real> auto archived(State<Dim, Real>& s) {
-  MemoryArchive a;
-  s.archive(a);
-  return a;
-}
-
 template <int Dim, class Real> auto archived_after(const Scene& scene, const Start& start, int threads, int steps) {
   const int before = omp_get_max_threads();
   omp_set_num_threads(threads);
@@ -282,9 +249,8 @@ TYPED_TEST(SleepOf, SurvivesARestartBitForBit) {
     bool slept = false;
     for (int piece = 0; piece < 20; ++piece) {
       auto other = state_of<Dim, Real>(scene, start);
-      MemoryArchive saved = archived(whole);
-      saved.loads = true;
-      other.archive(saved);
+      MemoryArchive checkpoint = saved(whole);
+      other.archive(checkpoint);
       for (int k = 0; k < 8; ++k) step(whole), step(other);
       ASSERT_EQ(archived(whole).arrays, archived(other).arrays) << "from step " << 8 * piece;
       slept |= whole.sleep.asleep > 0;

@@ -89,8 +89,10 @@ TYPED_TEST(VentFlow, FillsAShaftAtTheAskedRateWithoutABurst) {
   start.vents = {{0, 0, 0}};
   const double support = 2.6 * spacing;
   auto s = make_state<dim, Real>(features, parameters_of<dim>(scene, start),
-                                 Contact<dim>(shaft<dim>(half), spacing / 2, support), start, {},
-                                 Vents<dim>({floor_of_shaft<dim>(cells, speed * area)}, spacing, support));
+                                 {Contact<dim>(shaft<dim>(half), spacing / 2, support),
+                                  {},
+                                  Vents<dim>({floor_of_shaft<dim>(cells, speed * area)}, spacing, support)},
+                                 start);
   const auto waiting = static_cast<std::int64_t>(s.particles.count());
   double densest = 0, jump = 0;
   std::set<std::size_t> sizes;
@@ -121,8 +123,9 @@ TEST(VentFlow, WhatPassesAnOutflowIsGoneAndIdsGoOn) {
   start.spacing = spacing;
   start.vents = {{0, 0, 0}};
   start.vent_speed = 1;
-  auto s = make_state<2, float>(features, parameters_of<2>(scene, start), Contact<2>({}, spacing / 2, 1), start, {},
-                                Vents<2>({upward<2>(0.05, 0.1)}, spacing, 2.6 * spacing));
+  auto s = make_state<2, float>(
+      features, parameters_of<2>(scene, start),
+      {Contact<2>({}, spacing / 2, 1), {}, Vents<2>({upward<2>(0.05, 0.1)}, spacing, 2.6 * spacing)}, start);
   while (s.clock.time < 0.6) step(s);
   const Diagnostics d = diagnose(s);
   EXPECT_LT(d.upper[1], 0.2 + spacing);

@@ -158,11 +158,14 @@ TEST(WallIntegrals, TheShortWayIsTheLongOne) {
     const std::int32_t plane = walls.plane_near(x, reach);
     ASSERT_GE(plane, 0);
     const WallPatch<3> quick = walls.at_plane(plane, x);
+    int visited = 0;
     walls.visit(x, [&](const WallPatch<3>& exact) {
+      ++visited;
       EXPECT_NEAR(quick.weight, exact.weight, 1e-5);
       EXPECT_NEAR(quick.hidden, exact.hidden, 1e-5);
       EXPECT_LT((quick.centroid - exact.centroid).norm(), 1e-4);
     });
+    EXPECT_EQ(visited, 1);
   }
 }
 
@@ -177,7 +180,8 @@ TEST(WallIntegrals, TellWhichWallsAreNear) {
 }
 
 TEST(WallIntegrals, EveryKernel) {
-  for (const auto kind : {KernelKind::quadratic, KernelKind::cubic_spline, KernelKind::lucy, KernelKind::poly6})
+  for (const auto kind : {KernelKind::gaussian, KernelKind::quadratic, KernelKind::cubic_spline,
+                          KernelKind::wendland_c2, KernelKind::lucy, KernelKind::poly6, KernelKind::spiky})
     for (const int dim : {2, 3}) {
       const RadialIntegrals radial(kind, dim, 1);
       EXPECT_NEAR(radial.plane_hidden(0), 0.5, 2e-3) << static_cast<int>(kind) << ' ' << dim;

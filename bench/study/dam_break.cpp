@@ -41,6 +41,10 @@ void expect_series(Report& report, const std::string& name, double raw_reach, do
 }
 
 void judge_series(Report& report, const std::string& name, const Series& run, const Series& experiment) {
+  if (run.at.empty() || experiment.at.empty()) {  // the run ends before the experiment's time begins
+    for (const char* what : {"_raw", "_shifted", "_time_shift"}) report.judge(name + what, no_reach);
+    return;
+  }
   const double duration = experiment.at.back();
   const double shift = best_shift(run, experiment, 0.3 * duration);
   report.judge(name + "_raw", relative_rms(run, experiment));

@@ -14,6 +14,11 @@ namespace {
 
 /// Judges a pressure over time by the size of its peak and by when it first is a tenth of the experiment's peak.
 void judge_impact(Report& report, const std::string& name, const Series& run, const Series& experiment) {
+  if (run.at.empty() || experiment.at.empty()) {  // the run ends before the experiment's time begins
+    report.judge(name + "_peak", no_reach);
+    report.judge(name + "_arrival", no_reach);
+    return;
+  }
   const auto peak = [](const Series& s) { return *std::max_element(s.value.begin(), s.value.end()); };
   const double expected = peak(experiment), tenth = expected / 10;
   report.judge(name + "_peak", std::abs(peak(run) / expected - 1));

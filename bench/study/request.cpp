@@ -40,6 +40,8 @@ void apply(const Case& chosen, Request& request, const std::string& setting) {
     request.scene_overrides.push_back(setting);
   } else if (request.given.contains(key)) {
     request.given[key] = number(key, value);
+    if (key == "dimensions" && request.given[key] != 2 && request.given[key] != 3)
+      refuse(fmt::format("--set {}: a case runs in 2 or 3 dimensions", setting));
   } else {
     refuse(
         fmt::format("--set {}: {} has no such parameter; it has {}{}{}; keys of the scene go with their table, such as "

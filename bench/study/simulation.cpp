@@ -4,9 +4,11 @@
 
 #include <chrono>
 
+#include "core/diagnostics.h"
 #include "core/error.h"
 #include "core/step.h"
 #include "io/geometry/assemble.h"
+#include "io/geometry/vents.h"
 #include "io/scene/scene_file.h"
 
 namespace molten::study {
@@ -16,9 +18,10 @@ namespace {
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Setup& setup) {
-  const Parameters<Dim> p = parameters_of<Dim>(scene, setup.start);
-  Contact<Dim> contact(build_walls<Dim>(scene, setup.start.spacing), setup.start.spacing / 2, p.support_radius);
-  State<Dim, Real> s = make_state<Dim, Real>(features_of(scene), p, std::move(contact), setup.start);
+  Start start = setup.start;
+  describe_vents(scene, start);
+  const Parameters<Dim> p = parameters_of<Dim>(scene, start);
+  State<Dim, Real> s = make_state<Dim, Real>(features_of(scene), p, build_surroundings(scene, start, p), start);
   if (setup.pressure.empty()) return s;
   for (std::size_t slot = 0; slot < s.particles.slots(); ++slot) {
     if (s.particles.is_padding(slot)) continue;
@@ -62,6 +65,7 @@ template <int Dim, class Real> class Engine : public Simulation {
       c.pressure.push_back(p.eos.pressure(delta));
       if (state_.features.heat) c.temperature.push_back(state_.particles[temperature][0][slot]);
     }
+    c.bodies = snapshots_of(state_.bodies);
     return c;
   }
 
@@ -110,12 +114,22 @@ void push_step(Numerics& n, double factor) {
   if (n.fixed_dt) *n.fixed_dt *= factor;
 }
 
+/// A case's text sets the sound speed; an ideal gas takes its square instead.
+std::string text_for(const std::string& preset, std::string text) {
+  constexpr std::string_view key = "sound_speed = ";
+  const std::size_t at = text.find(key);
+  if (preset != "queiroz" || at == std::string::npos) return text;
+  const std::size_t end = text.find('\n', at);
+  const double c = std::stod(text.substr(at + key.size(), end));
+  return text.replace(at, end - at, fmt::format("stiffness = {:.17g}", c * c));
+}
+
 }  // namespace
 
 std::unique_ptr<Simulation> Simulation::make(const Request& request, const Setup& setup, Report& report) {
   std::vector<std::string> overrides{fmt::format("numerics.preset=\"{}\"", request.numerics)};
   overrides.insert(overrides.end(), request.scene_overrides.begin(), request.scene_overrides.end());
-  Scene scene = parse_scene(setup.scene, "case", overrides);
+  Scene scene = parse_scene(text_for(request.numerics, setup.scene), "case", overrides);
   push_step(scene.numerics, request[step_factor]);
   if (scene.dimensions == 2) return make_engine<2>(scene, setup, report);
   return make_engine<3>(scene, setup, report);

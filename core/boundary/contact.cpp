@@ -40,7 +40,7 @@ template <int Dim> void require_planes(const std::vector<Wall<Dim>>& walls) {
 /// A turning body has set a particle aside, by the bend of its way during the step: the moment of that, too, is shared.
 template <int Dim>
 void set_aside(const Motion<Dim>& m, const Point<Dim>& by, std::int32_t body, std::span<Kick<Dim>> kicks) {
-  if (!kicks.empty()) kicks[body].angular += moment(by, m.velocity);
+  if (!kicks.empty()) kicks[body].angular += moment_of(by, m.velocity);
 }
 
 }  // namespace
@@ -217,7 +217,7 @@ template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt, std::
       if (by.body < 0 || kicks.empty()) return;
       const Point<Dim> arm = m.position - bodies[by.body].motion.after(dt).centre;
       kicks[by.body].linear += gain;
-      kicks[by.body].angular += moment(arm, gain);
+      kicks[by.body].angular += moment_of(arm, gain);
     });
     touching.respond(m.rate, held, [](const Touch<Dim>&, const Point<Dim>&) {});
   }
@@ -242,7 +242,9 @@ template <int Dim> bool Contact<Dim>::empty() const { return impl_->bodies.empty
 template <int Dim> std::size_t Contact<Dim>::bodies() const { return impl_->bodies.size(); }
 
 template <int Dim> const std::vector<Wall<Dim>>& Contact<Dim>::fixed_walls() const { return impl_->fixed.walls; }
-template <int Dim> const WallSurface<Dim>& Contact<Dim>::fixed_surface() const { return impl_->fixed.search->surface(); }
+template <int Dim> const WallSurface<Dim>& Contact<Dim>::fixed_surface() const {
+  return impl_->fixed.search->surface();
+}
 
 template <int Dim> void Contact<Dim>::set_motion(std::size_t body, const RigidMotion<Dim>& motion) {
   impl_->bodies[body].motion = motion;

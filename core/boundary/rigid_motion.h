@@ -14,8 +14,8 @@ inline Point<2> cross(const Spin<2>& spin, const Point<2>& r) { return {-spin[0]
 inline Point<3> cross(const Spin<3>& spin, const Point<3>& r) { return spin.cross(r); }
 
 /// r × f
-inline Spin<2> moment(const Point<2>& r, const Point<2>& f) { return Spin<2>(r[0] * f[1] - r[1] * f[0]); }
-inline Spin<3> moment(const Point<3>& r, const Point<3>& f) { return r.cross(f); }
+inline Spin<2> moment_of(const Point<2>& r, const Point<2>& f) { return Spin<2>(r[0] * f[1] - r[1] * f[0]); }
+inline Spin<3> moment_of(const Point<3>& r, const Point<3>& f) { return r.cross(f); }
 
 /// The rotation about the direction of `angle` by its length (rad).
 inline Turn<2> turn_by(const Spin<2>& angle) { return Eigen::Rotation2Dd(angle[0]).toRotationMatrix(); }

@@ -7,8 +7,8 @@ namespace molten {
 
 template <int Dim>
 WallSupport<Dim>::WallSupport(const Contact<Dim>& contact, const Parameters<Dim>& p)
-    : integrals_(
-          std::make_shared<WallIntegrals<Dim>>(contact.fixed_walls(), contact.fixed_surface(), p.kernel, p.smoothing_length)),
+    : integrals_(std::make_shared<WallIntegrals<Dim>>(contact.fixed_walls(), contact.fixed_surface(), p.kernel,
+                                                      p.smoothing_length)),
       walls_(contact.fixed_walls()),
       reach_(integrals_->reach() + p.skin) {}
 

@@ -11,6 +11,7 @@
 #include "core/boundary/shapes.h"
 #include "core/error.h"
 #include "core/fill.h"
+#include "io/geometry/bodies.h"
 #include "io/geometry/mesh_file.h"
 #include "io/geometry/terrain.h"
 #include "io/geometry/vents.h"
@@ -231,6 +232,17 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
   return walls;
 }
 
+template <int Dim>
+Surroundings<Dim> build_surroundings(const Scene& scene, const Start& start, const Parameters<Dim>& p) {
+  std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
+  Bodies<Dim> bodies = take_bodies(scene, walls);
+  Contact<Dim> contact(std::move(walls), p.contact_radius, p.support_radius);
+  bodies.place(contact);
+  return {std::move(contact), std::move(bodies), build_vents<Dim>(scene, start, p.support_radius)};
+}
+
+template Surroundings<2> build_surroundings(const Scene&, const Start&, const Parameters<2>&);
+template Surroundings<3> build_surroundings(const Scene&, const Start&, const Parameters<3>&);
 template std::vector<Wall<2>> build_walls(const Scene&, double);
 template std::vector<Wall<3>> build_walls(const Scene&, double);
 

@@ -9,6 +9,7 @@
 #include "core/features.h"
 #include "core/parameters.h"
 #include "core/scene.h"
+#include "core/state.h"
 
 namespace molten {
 
@@ -20,6 +21,10 @@ TriangleMesh placed_mesh(const Scene& scene, const MeshFile& file);
 
 /// The walls of a scene for the solver, one for each boundary; those that move as they are first placed in the world.
 template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing);
+
+/// The same, ready for a run: contact with its particles, walls that move, vents.
+template <int Dim>
+Surroundings<Dim> build_surroundings(const Scene& scene, const Start& start, const Parameters<Dim>& parameters);
 
 /// The fixed walls as one surface for pictures (2-D outlines: thin strips); planes become squares about the fluid.
 TriangleMesh picture_of_walls(const Scene& scene, const Start& start);

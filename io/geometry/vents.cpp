@@ -89,6 +89,18 @@ template <int Dim> void describe(const Scene& scene, Start& start) {
   start.vent_speed = vents.fastest();
 }
 
+/// The fluid that waits behind a vent supports what leaves it; a wall there would do so again.
+template <int Dim>
+void require_no_support(const Scene& scene, const Vent& vent, const VentPatch<Dim>& patch, const Contact<Dim>& contact,
+                        double support) {
+  for (const Point<Dim>& offset : patch.offsets)
+    if (contact.may_touch(patch.centre + offset, support))
+      throw Error(ExitCode::geometry,
+                  fmt::format("{}: is within {:.4g} m of a wall, which would support its fluid a second time; move it "
+                              "away or leave numerics.wall_support out",
+                              name_of(scene, vent), support));
+}
+
 }  // namespace
 
 template <int Dim> Vents<Dim> build_vents(const Scene& scene, const Start& start, double support) {
@@ -107,6 +119,8 @@ template <int Dim> void require_open_vents(const Scene& scene, const Start& star
   const Vents<Dim> vents = build_vents<Dim>(scene, start, start.spacing);
   for (std::size_t k = 0; k < vents.count(); ++k) {
     const VentPatch<Dim>& patch = vents.patch(k);
+    if (scene.numerics.wall_support)
+      require_no_support(scene, scene.vents[k], patch, contact, parameters_of<Dim>(scene, start).support_radius);
     Start outside;  // where a layer is when it has left
     outside.spacing = start.spacing;
     for (const Point<Dim>& offset : patch.offsets) {

@@ -55,15 +55,11 @@ std::string joined(const std::vector<std::string>& words) {
 
 template <int Dim, class Real> void print_run(const Scene& scene, const Features& features, const Start& start) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
-  std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
-  Bodies<Dim> bodies = take_bodies(scene, walls);
-  Contact<Dim> contact(std::move(walls), p.contact_radius, p.support_radius);
-  bodies.place(contact);
-  require_no_overlap(scene, start, contact);
-  require_open_vents(scene, start, contact);
-  print_leak(scene, start, contact);
-  State<Dim, Real> s = make_state<Dim, Real>(features, p, std::move(contact), start, std::move(bodies),
-                                             build_vents<Dim>(scene, start, p.support_radius));
+  Surroundings<Dim> around = build_surroundings(scene, start, p);
+  require_no_overlap(scene, start, around.contact);
+  require_open_vents(scene, start, around.contact);
+  print_leak(scene, start, around.contact);
+  State<Dim, Real> s = make_state<Dim, Real>(features, p, std::move(around), start);
   // A few steps tell the time step, its limit and the speed of this machine.
   step(s);
   const auto begun = std::chrono::steady_clock::now();

@@ -12,8 +12,8 @@
 #include "core/step.h"
 #include "io/geometry/assemble.h"
 #include "io/geometry/bodies.h"
-#include "io/geometry/vents.h"
 #include "io/geometry/obj_file.h"
+#include "io/geometry/vents.h"
 #include "io/hdf5/checkpoint.h"
 #include "io/hdf5/frames.h"
 #include "io/program/progress.h"
@@ -230,15 +230,10 @@ template <int Dim, class Real>
 Runner<Dim, Real> prepare_run(const Scene& scene, const std::filesystem::path& folder, const Features& features,
                               const Start& start) {
   const Parameters<Dim> parameters = parameters_of<Dim>(scene, start);
-  std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
-  Bodies<Dim> bodies = take_bodies(scene, walls);
-  Contact<Dim> contact(std::move(walls), parameters.contact_radius, parameters.support_radius);
-  bodies.place(contact);
-  require_no_overlap(scene, start, contact);
-  require_open_vents(scene, start, contact);
-  return Runner<Dim, Real>(scene, folder,
-                           make_state<Dim, Real>(features, parameters, std::move(contact), start, std::move(bodies),
-                                               build_vents<Dim>(scene, start, parameters.support_radius)),
+  Surroundings<Dim> around = build_surroundings(scene, start, parameters);
+  require_no_overlap(scene, start, around.contact);
+  require_open_vents(scene, start, around.contact);
+  return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(around), start),
                            fingerprint(scene, start));
 }
 

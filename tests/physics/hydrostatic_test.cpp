@@ -80,7 +80,6 @@ template <int Dim, class Real> Rest settle(const Tank& tank) {
   const std::string text = fmt::format("pressure {:.4f} bottom {:.4f} kinetic {:.1e} in {} steps", rest.pressure,
                                        rest.bottom, rest.kinetic, s.clock.step);
   ::testing::Test::RecordProperty("outcome", text);
-  if (std::getenv("MOLTEN_VERBOSE")) fmt::print("{}\n", text);
   return rest;
 }
 
