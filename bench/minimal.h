@@ -29,27 +29,29 @@ template <int Dim, class Real> void minimal_integrate(State<Dim, Real>& s) {
   const auto half_v = p[half_velocity];
   const auto a = p[acceleration];
   Real *half_c = p[half_compression][0], *previous = p[previous_compression_rate][0], *c = p[compression][0];
-  const auto advance = [&](std::size_t slot, double& largest) {
-    double way2 = 0;
-    if (!p.is_padding(slot)) {
-      for (int d = 0; d < Dim; ++d) {
-        const double w = half_v[d][slot] + kick * a[d][slot];
-        half_v[d][slot] = static_cast<Real>(w);
-        v[d][slot] = static_cast<Real>(w + dt / 2 * a[d][slot]);
-        x[d][slot] += dt * w;
-        way2 += dt * w * dt * w;
-      }
-      const double rate = p[compression_rate][0][slot], rise = stretch * (rate - previous[slot]);
-      const double half = half_c[slot] + kick * rate;
-      half_c[slot] = static_cast<Real>(half);
-      c[slot] = static_cast<Real>(half + dt / 2 * (rate + rise));
-      previous[slot] = static_cast<Real>(rate);
+  using Wide = Lanes<double, cluster_size>;
+  const auto read = [](const Real* from) { return load_double<cluster_size>(from); };
+  const auto advance = [&](std::size_t cluster, double& furthest) {
+    const std::size_t slot = cluster * cluster_size;
+    Wide way2(0.0);
+    for (int d = 0; d < Dim; ++d) {
+      const Wide rate = read(a[d] + slot), w = read(half_v[d] + slot) + Wide(kick) * rate;
+      store_rounded(w, half_v[d] + slot);
+      store_rounded(w + Wide(dt / 2) * rate, v[d] + slot);
+      store(load<cluster_size>(x[d] + slot) + Wide(dt) * w, x[d] + slot);
+      way2 += Wide(dt * dt) * w * w;
     }
-    largest = std::max(largest, way2);
-    s.neighbours.localise(p, slot);
-    p[pressure_term][0][slot] = static_cast<Real>(s.parameters.eos.term(c[slot]));
+    const Wide rate = read(p[compression_rate][0] + slot), rise = Wide(stretch) * (rate - read(previous + slot));
+    const Wide half = read(half_c + slot) + Wide(kick) * rate;
+    store_rounded(half, half_c + slot);
+    store_rounded(half + Wide(dt / 2) * (rate + rise), c + slot);
+    store_rounded(rate, previous + slot);
+    furthest = std::max(furthest, largest(way2));
+    s.neighbours.localise(p, cluster);
+    store_rounded(s.parameters.eos.term(read(c + slot)), p[pressure_term][0] + slot);
   };
-  s.neighbours.moved(std::sqrt(reduce_slots(p.slots(), 0.0, advance, [](double& m, double n) { m = std::max(m, n); })));
+  s.neighbours.moved(
+      std::sqrt(reduce_slots(s.neighbours.clusters(), 0.0, advance, [](double& m, double n) { m = std::max(m, n); })));
 }
 
 /// One step; `own_integrator`: the one above instead of the solver's.

@@ -37,7 +37,10 @@ template <int Dim, class Real> std::string check_list(const State<Dim, Real>& s)
   for (std::size_t k = 0; k < chunks.size(); k += std::max<std::size_t>(1, chunks.size() / 20)) {
     const std::uint32_t cluster = chunks[k].begin;
     std::vector<std::uint32_t> listed;
-    for (const ListEntry e : chunks[k].of(cluster)) listed.push_back(static_cast<std::uint32_t>(shifts.cluster(e)));
+    s.neighbours.for_each_list(chunks[k], [&](std::uint32_t c, auto list) {
+      if (c == cluster)
+        for (const ListEntry e : list) listed.push_back(static_cast<std::uint32_t>(shifts.cluster(e)));
+    });
     for (std::size_t i = std::size_t{cluster} * cluster_size; i < (std::size_t{cluster} + 1) * cluster_size; ++i)
       for (std::size_t j = 0; j < p.slots(); ++j) {
         if (p.is_padding(i) || p.is_padding(j)) continue;

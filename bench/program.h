@@ -47,7 +47,8 @@ void count_work(benchmark::State& bench, const Work& work, double seconds, doubl
 /// Pairs that a pass over the present list computes: clusters against clusters.
 template <int Dim, class Real> double listed_pairs(const State<Dim, Real>& s) {
   double entries = 0;
-  for (const ClusterChunk& chunk : s.neighbours.chunks()) entries += static_cast<double>(chunk.entries.size());
+  for (const ClusterChunk& chunk : s.neighbours.chunks())
+    s.neighbours.for_each_list(chunk, [&](std::uint32_t, auto list) { entries += static_cast<double>(list.size()); });
   return entries * cluster_size * cluster_size;
 }
 

@@ -14,7 +14,8 @@ namespace molten {
 namespace {
 
 constexpr std::uint32_t clusters_a_chunk = 128;
-constexpr int boxes_at_once = 8;  // in the search for neighbours
+constexpr int boxes_at_once = 8;            // in the search for neighbours
+constexpr std::int32_t segments_a_row = 1;  // from the first cluster's to the last one's, at most
 
 }  // namespace
 
@@ -55,24 +56,25 @@ void ClusterList<Dim, Real>::find_boxes(const ClusterOrder<Dim>& order, Particle
   });
 }
 
-/// Clusters whose boxes are within this are neighbours (m): the support and the skin, and a little slack, since boxes
-/// are floats and rounding must never lose a pair.
-template <int Dim, class Real> double ClusterList<Dim, Real>::range(const ClusterOrder<Dim>& order) const {
+/// Particles that a shell holds are within this of each other (m): a little slack, since boxes are floats and rounding
+/// must never lose a pair.
+template <int Dim, class Real> double ClusterList<Dim, Real>::range(const ClusterOrder<Dim>& order, int shell) const {
   constexpr int along = Grid<Dim>::along;
-  return (settings_.support_radius + settings_.skin) * (1 + 1e-5) +
+  return (settings_.support_radius + settings_.skin * (shell + 1) / shells) * (1 + 1e-5) +
          4e-7 * order.grid.cells[along] * order.grid.width[along];
 }
 
 template <int Dim, class Real> void ClusterList<Dim, Real>::number_shifts(const ClusterOrder<Dim>& order) {
   // When relisting, particles may have left their cell by half a skin each.
-  const double farthest = range(order) + settings_.skin;
+  const double farthest = range(order, shells - 1) + settings_.skin;
   std::size_t count = 1;
   for (int d = 0; d < Dim; ++d) {
     shifts_.reach[d] = static_cast<int>(std::ceil(
         (farthest + (d == Grid<Dim>::along ? longest_cluster * settings_.spacing : 0)) / order.grid.width[d]));
     count *= 2 * shifts_.reach[d] + 1;
   }
-  shifts_.cluster_bits = 32 - static_cast<int>(std::bit_width(count - 1));
+  // Entries of a row are seen from its first cluster, which may be some segments before another.
+  shifts_.cluster_bits = 32 - static_cast<int>(std::bit_width(count - 1 + segments_a_row));
   if (order.clusters() >> shifts_.cluster_bits)
     throw Error(ExitCode::usage, "numerics: " + std::to_string(order.clusters() * cluster_size) +
                                      " particles at this support radius are more than one neighbour list holds; lower "
@@ -88,42 +90,70 @@ template <int Dim, class Real> void ClusterList<Dim, Real>::number_shifts(const 
   }
 }
 
-/// Lists the neighbours of a chunk's clusters. The clusters of a column look at the same columns around it, each with a
-/// cursor that only moves forward.
+/// Lists the neighbours of a chunk's clusters, row by row. The rows of a column look at the same columns around it,
+/// each with a cursor that only moves forward: first all clusters whose boxes are near the row's, then of these the
+/// ones of which a particle is near one of the row's.
 template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
  public:
   Lister(const ClusterList& list, const ClusterOrder<Dim>& order, const Particles<Dim, Real>& particles)
       : list_(list),
         order_(order),
         local_(particles[local_position]),
-        range_(list_.range(order)),
-        reach2_(static_cast<float>(range_ * range_)),
+        range_(static_cast<float>(list_.range(order, shells - 1))),
         // Boxes follow one another along the column, after a restart up to half a skin out of order.
-        slack_(static_cast<float>(range_ + list_.settings_.skin)) {}
+        slack_(static_cast<float>(range_ + list_.settings_.skin)) {
+    for (int s = 0; s < shells; ++s) {
+      const double range = list_.range(order, s);
+      reach2_[s] = Wide(static_cast<Real>(range * range));
+    }
+  }
 
   void list(ClusterChunk& chunk) {
-    found_.resize(std::size_t{chunk.end - chunk.begin} * 128);
-    count_ = 0;
-    chunk.entry_begin.assign(1, 0);
-    for (std::uint32_t c = chunk.begin; c < chunk.end; ++c) {
-      if (c == chunk.begin || order_.grid.column(order_.cells[c]) != order_.grid.column(order_.cells[c - 1]))
-        look_around(order_.cells[c]);
-      load_own(c);
-      for (Target& target : targets_) list_column(c, target);
-      chunk.entry_begin.push_back(static_cast<std::uint32_t>(count_));
+    chunk.rows.clear();
+    entries_.clear();
+    masks_.clear();
+    for (std::uint32_t c = chunk.begin; c < chunk.end;) {
+      if (c == chunk.begin || !same_column(c, c - 1)) look_around(order_.cells[c]);
+      const Row row{c, row_end(c, chunk.end)};
+      chunk.rows.push_back({c, static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(masks_.size())});
+      list_row(row);
+      c = row.end;
     }
-    chunk.entries.assign(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(count_));
+    chunk.rows.push_back(
+        {chunk.end, static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(masks_.size())});
+    entries_.resize(entries_.size() + ClusterChunk::mask_bits);
+    chunk.entries.assign(entries_.begin(), entries_.end());
+    chunk.masks.assign(masks_.begin(), masks_.end());
   }
 
  private:
   static constexpr int along = Dim - 1;
+  static constexpr int N = native_lanes<Real>, I = cluster_size, J = N / I;
+  using Wide = Lanes<Real, N>;
+  static_assert(N >= cluster_size && clusters_a_row * shells <= 16);
 
+  struct Row {
+    std::uint32_t begin, end;  // clusters
+  };
   /// A column around the present one, or a periodic image of it.
   struct Target {
     std::uint32_t cursor, end;     // clusters
     std::array<float, Dim> shift;  // m; its origin as seen from here
     std::int32_t number;           // of the shift to its segment 0
+    std::int32_t segments;         // to the image
   };
+
+  bool same_column(std::uint32_t a, std::uint32_t b) const {
+    return order_.grid.column(order_.cells[a]) == order_.grid.column(order_.cells[b]);
+  }
+
+  std::uint32_t row_end(std::uint32_t begin, std::uint32_t end) const {
+    std::uint32_t c = begin + 1;
+    while (c < end && c < begin + clusters_a_row && same_column(begin, c) &&
+           order_.cells[c][along] <= order_.cells[begin][along] + segments_a_row)
+      ++c;
+    return c;
+  }
 
   void look_around(const Cell<Dim>& cell) {
     targets_.clear();
@@ -157,87 +187,135 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
     const int images = grid.periodic[along] ? 1 + static_cast<int>(slack_ / length) : 0;
     if (order_.pile_begin[pile] == order_.pile_begin[pile + 1]) return;
     for (int image = -images; image <= images; ++image) {
-      Target target{order_.pile_begin[pile], order_.pile_begin[pile + 1], {}, 0};
+      Target target{order_.pile_begin[pile], order_.pile_begin[pile + 1], {}, 0, image * grid.cells[along]};
       for (int d = 0; d < along; ++d) target.shift[d] = static_cast<float>(offset[d] * grid.width[d]);
       target.shift[along] = static_cast<float>(image * length);
-      target.number = static_cast<std::int32_t>(list_.shifts_.number(offset)) + image * grid.cells[along];
+      target.number = static_cast<std::int32_t>(list_.shifts_.number(offset)) + target.segments;
       targets_.push_back(target);
     }
   }
 
-  /// Appends the clusters of a column whose boxes come within range of the cluster's.
-  void list_column(std::uint32_t cluster, Target& target) {
-    const Boxes& boxes = list_.boxes_;
-    std::array<float, Dim> lower, upper;  // of the cluster, as seen from the column
+  // ---- clusters with near boxes ----
+
+  struct Box {
+    std::array<float, Dim> lower, upper;  // m, as boxes_
+  };
+
+  void list_row(const Row& row) {
+    Box box;
     for (int d = 0; d < Dim; ++d) {
-      lower[d] = boxes.lower[d][cluster] - target.shift[d];
-      upper[d] = boxes.upper[d][cluster] - target.shift[d];
+      box.lower[d] = *std::min_element(list_.boxes_.lower[d] + row.begin, list_.boxes_.lower[d] + row.end);
+      box.upper[d] = *std::max_element(list_.boxes_.upper[d] + row.begin, list_.boxes_.upper[d] + row.end);
+    }
+    near_count_ = 0;
+    for (std::uint32_t k = 0; k < targets_.size(); ++k) search_column(box, k);
+    keep_met(row);
+  }
+
+  void search_column(const Box& box, std::uint32_t number) {
+    const Boxes& boxes = list_.boxes_;
+    Target& target = targets_[number];
+    Box seen = box;  // from the column
+    for (int d = 0; d < Dim; ++d) {
+      seen.lower[d] -= target.shift[d];
+      seen.upper[d] -= target.shift[d];
     }
     const float* top = boxes.upper[along];
     const float* bottom = boxes.lower[along];
-    // The clusters that follow here lie no lower than this one by more than the slack allows for.
-    while (target.cursor < target.end && top[target.cursor] < lower[along] - slack_) ++target.cursor;
-    const std::int32_t number = target.number - order_.cells[cluster][along];
-    for (std::uint32_t first = target.cursor; first < target.end && bottom[first] <= upper[along] + slack_;
+    // The clusters that follow here lie no lower than this row by more than the slack allows for.
+    while (target.cursor < target.end && top[target.cursor] < seen.lower[along] - slack_) ++target.cursor;
+    for (std::uint32_t first = target.cursor; first < target.end && bottom[first] <= seen.upper[along] + slack_;
          first += boxes_at_once)
-      append(first, std::min<std::uint32_t>(target.end - first, boxes_at_once), lower, upper, number);
+      add_near(first, std::min<std::uint32_t>(target.end - first, boxes_at_once), seen, number);
   }
 
-  /// Those of `count` boxes from `first` on that are within reach.
-  void append(std::uint32_t first, std::uint32_t count, const std::array<float, Dim>& lower,
-              const std::array<float, Dim>& upper, std::int32_t number) {
+  /// Those of `count` boxes from `first` on that are near.
+  void add_near(std::uint32_t first, std::uint32_t count, const Box& box, std::uint32_t target) {
     using L = Lanes<float, boxes_at_once>;
     L distance2(0.f);
     for (int d = 0; d < Dim; ++d) {
-      const L gap = max(L(0.f), max(load_8(list_.boxes_.lower[d] + first) - L(upper[d]),
-                                    L(lower[d]) - load_8(list_.boxes_.upper[d] + first)));
+      const L gap = max(L(0.f), max(load_8(list_.boxes_.lower[d] + first) - L(box.upper[d]),
+                                    L(box.lower[d]) - load_8(list_.boxes_.upper[d] + first)));
       distance2 += gap * gap;
     }
-    if (count_ + boxes_at_once > found_.size()) found_.resize(2 * found_.size());
-    for (unsigned hit = less_mask(distance2, L(reach2_)) & ((1u << count) - 1); hit; hit &= hit - 1) {
-      const std::uint32_t other = first + static_cast<std::uint32_t>(std::countr_zero(hit));
-      const auto shift = static_cast<std::uint32_t>(number + order_.cells[other][along]);
-      found_[count_] = shift << list_.shifts_.cluster_bits | other;
-      count_ += meets(other, list_.shifts_.shift[shift]);
+    if (near_count_ + boxes_at_once > near_.size())
+      near_.resize(2 * near_.size() + 256), target_of_.resize(near_.size());
+    const unsigned hits = less_mask(distance2, L(range_ * range_)) & ((1u << count) - 1);
+    std::fill_n(target_of_.begin() + static_cast<std::ptrdiff_t>(near_count_), boxes_at_once, target);
+    near_count_ += static_cast<std::size_t>(write_set_bits(hits, first, near_.data() + near_count_));
+  }
+
+  // ---- of these, the ones of which a particle is within reach of one of the row's ----
+
+  void keep_met(const Row& row) {
+    load_own(row);
+    const std::size_t first = entries_.size();
+    entries_.resize(first + near_count_ + 1);
+    flags_.resize(near_count_ + ClusterChunk::mask_bits);
+    std::size_t count = 0;
+    const std::int32_t segment = order_.cells[row.begin][along];
+    for (std::size_t k = 0; k < near_count_; ++k) {
+      const Target& target = targets_[target_of_[k]];
+      const std::int32_t further = order_.cells[near_[k]][along] - segment;
+      flags_[count] = meetings(near_[k], target, further);
+      entries_[first + count] =
+          static_cast<ListEntry>(target.number + further) << list_.shifts_.cluster_bits | near_[k];
+      count += flags_[count] != 0;
+    }
+    entries_.resize(first + count);
+    std::fill_n(flags_.begin() + static_cast<std::ptrdiff_t>(count), ClusterChunk::mask_bits, 0);
+    for (int bit = 0; bit < static_cast<int>(row.end - row.begin) * shells; ++bit)
+      for (std::size_t k = 0; k < count; k += ClusterChunk::mask_bits)
+        masks_.push_back(gather_bit(flags_.data() + k, bit));
+  }
+
+  /// Positions of the row's particles from the origin of its first cluster.
+  void load_own(const Row& row) {
+    own_count_ = row.end - row.begin;
+    for (std::uint32_t g = 0; g < own_count_; ++g) {
+      for (int d = 0; d < Dim; ++d)
+        own_[g][d] = load_i<I, Real, N>(local_[d] + std::size_t{row.begin + g} * cluster_size);
+      const std::int32_t further = order_.cells[row.begin + g][along] - order_.cells[row.begin][along];
+      own_[g][along] += Wide(static_cast<Real>(further * order_.grid.width[along]));
     }
   }
 
-  // ---- of those with near boxes, the ones of which a particle is within reach of one here: a seventh fewer ----
-
-  static constexpr int N = native_lanes<Real>;
-  static constexpr int I = N < cluster_size ? N : cluster_size, J = N / I;
-  using Wide = Lanes<Real, N>;
-
-  void load_own(std::uint32_t cluster) {
-    for (int i = 0; i < cluster_size; i += I)
-      for (int d = 0; d < Dim; ++d)
-        own_[i / I][d] = load_i<I, Real, N>(local_[d] + std::size_t{cluster} * cluster_size + i);
-  }
-
-  bool meets(std::uint32_t other, const std::array<double, Dim>& shift) const {
-    bool near = false;
-    for (const auto& own : own_)
-      for (int j = 0; j < cluster_size; j += J) {
-        Wide distance2(Real(0));
-        unrolled<Dim>([&](auto d) {
-          const Wide x = own[d] - Wide(static_cast<Real>(shift[d])) -
-                         load_j<J, Real, N>(local_[d] + std::size_t{other} * cluster_size + j);
-          distance2 = x * x + distance2;
-        });
-        near |= any_less(distance2, Wide(static_cast<Real>(reach2_)));
+  /// Bit g · shells + s: is a particle of a cluster within shell s of one of the row's cluster g?
+  std::uint16_t meetings(std::uint32_t other, const Target& target, std::int32_t further) const {
+    Vec<Dim, Wide> shift;
+    for (int d = 0; d < along; ++d) shift[d] = Wide(static_cast<Real>(target.shift[d]));
+    shift[along] = Wide(static_cast<Real>((further + target.segments) * order_.grid.width[along]));
+    std::array<Wide, clusters_a_row> nearest;
+    nearest.fill(Wide(std::numeric_limits<Real>::max()));
+    for (int j = 0; j < cluster_size; j += J) {
+      Vec<Dim, Wide> x;
+      unrolled<Dim>(
+          [&](auto d) { x[d] = load_j<J, Real, N>(local_[d] + std::size_t{other} * cluster_size + j) + shift[d]; });
+      for (std::uint32_t g = 0; g < own_count_; ++g) {
+        const Vec<Dim, Wide> way = own_[g] - x;
+        nearest[g] = min(nearest[g], dot(way, way));
       }
-    return near;
+    }
+    unsigned flags = 0;
+    for (std::uint32_t g = 0; g < own_count_; ++g)
+      for (int s = 0; s < shells; ++s)
+        flags |= static_cast<unsigned>(any_less(nearest[g], reach2_[s])) << (g * shells + s);
+    return static_cast<std::uint16_t>(flags);
   }
 
   const ClusterList& list_;
   const ClusterOrder<Dim>& order_;
   Column<LocalPosition, Dim, Real> local_;
-  Vec<Dim, Wide> own_[cluster_size / I];  // local positions of the cluster that lists
-  double range_;                          // m
-  float reach2_, slack_;
+  float range_, slack_;                             // m
+  std::array<Wide, shells> reach2_;                 // m²
+  std::array<Vec<Dim, Wide>, clusters_a_row> own_;  // of the row; own_count_ of them
+  std::uint32_t own_count_ = 0;
   std::vector<Target> targets_;
-  std::vector<ListEntry> found_;  // of the chunk; count_ of them
-  std::size_t count_ = 0;
+  std::vector<std::uint32_t> near_, target_of_;  // clusters with boxes near the row's; near_count_ of them
+  std::size_t near_count_ = 0;
+  std::vector<std::uint16_t> flags_;  // of the row's entries
+  std::vector<ListEntry> entries_;    // of the chunk
+  std::vector<std::uint16_t> masks_;
 };
 
 template <int Dim, class Real>
@@ -276,7 +354,7 @@ template <int Dim, class Real> std::size_t ClusterList<Dim, Real>::bytes() const
   for (const std::vector<float>& side : lasting_boxes_) sum += bytes_of(side);
   for (const auto* chunks : {&chunks_, &warm_chunks_}) {
     sum += bytes_of(*chunks);
-    for (const ClusterChunk& c : *chunks) sum += bytes_of(c.entries) + bytes_of(c.entry_begin);
+    for (const ClusterChunk& c : *chunks) sum += bytes_of(c.rows) + bytes_of(c.entries) + bytes_of(c.masks);
   }
   return sum;
 }

@@ -1,12 +1,18 @@
-// For every cluster, those of which a particle is within the support radius and a skin of one of its own.
+// For every cluster, those of which a particle is within reach of one of its own.
+//
+// Neighbouring clusters of a column share one row of entries, with a mask of bits for each of them: a third of the
+// memory that lists of their own would take. There is a mask for each shell, too: the list is good until particles have
+// moved half a skin, but only the clusters within the support and what particles have moved so far can matter.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/cluster_order.h"
+#include "core/simd.h"
 
 namespace molten {
 
@@ -14,16 +20,25 @@ namespace molten {
 /// origin to its own (images of periodic axes counted on, so a periodic neighbour needs nothing more).
 using ListEntry = std::uint32_t;
 
+inline constexpr int clusters_a_row = 4;  // at most
+inline constexpr int shells = 3;          // shell s reaches as far as the support and (s + 1)/shells of the skin
+
 /// Clusters that are handled together by one thread: the fixed block of all pair work.
 struct ClusterChunk {
-  std::uint32_t begin = 0, end = 0;        // clusters
-  std::vector<ListEntry> entries;          // of all its clusters, in order
-  std::vector<std::uint32_t> entry_begin;  // end − begin + 1 positions in entries
+  /// Clusters that follow one another in a column and share entries.
+  struct Row {
+    std::uint32_t first_cluster, first_entry, first_mask;
+    bool operator==(const Row&) const = default;
+  };
+  std::uint32_t begin = 0, end = 0;  // clusters
+  std::vector<Row> rows;             // and the end
+  std::vector<ListEntry> entries;    // as seen from the first cluster of the row; mask_bits beyond the end
+  std::vector<std::uint16_t> masks;  // of each row's clusters, for each its shells: bit k of the words for entry k
 
-  std::span<const ListEntry> of(std::uint32_t cluster) const {
-    const std::uint32_t k = cluster - begin;
-    return {entries.data() + entry_begin[k], entries.data() + entry_begin[k + 1]};
-  }
+  static constexpr std::size_t mask_bits = 16;
+  std::size_t entries_of(std::size_t row) const { return rows[row + 1].first_entry - rows[row].first_entry; }
+  static constexpr std::size_t words(std::size_t entries) { return (entries + mask_bits - 1) / mask_bits; }
+  bool operator==(const ClusterChunk&) const = default;
 };
 
 /// The offsets between neighbouring cells' origins, numbered: across by columns, along by segments.
@@ -39,6 +54,8 @@ template <int Dim> struct ShiftTable {
   }
   std::uint32_t cluster(ListEntry e) const { return e & ((std::uint64_t{1} << cluster_bits) - 1); }
   const std::array<double, Dim>& of(ListEntry e) const { return shift[std::uint64_t{e} >> cluster_bits]; }
+  /// The entry as seen from a cluster that many segments further along.
+  ListEntry seen_from(std::int32_t segments) const { return static_cast<ListEntry>(segments) << cluster_bits; }
 };
 
 struct NeighbourSettings {
@@ -60,6 +77,16 @@ template <int Dim, class Real> class ClusterList {
   const ShiftTable<Dim>& shifts() const { return shifts_; }
   std::size_t bytes() const;
 
+  /// The smallest shell that holds all pairs while no particle has moved more than this (m).
+  int shell(double displacement) const {
+    int s = 0;
+    while (s + 1 < shells && 2 * displacement * shells > settings_.skin * (s + 1)) ++s;
+    return s;
+  }
+
+  /// f(cluster, its neighbours in a shell as a span of ListEntry) for the clusters of a chunk, in order.
+  template <class F> void for_each(const ClusterChunk& chunk, const ClusterOrder<Dim>& order, int shell, F&& f) const;
+
  private:
   /// Bounding boxes of the clusters (m): across relative to the column's origin, along from the grid's lower end. Some
   /// boxes out of reach follow the last, for loops that take several at once. While listing, in the particles' scratch;
@@ -68,7 +95,7 @@ template <int Dim, class Real> class ClusterList {
     float *lower[Dim], *upper[Dim];
   };
   class Lister;
-  double range(const ClusterOrder<Dim>& order) const;
+  double range(const ClusterOrder<Dim>& order, int shell) const;
   void place_boxes(const ClusterOrder<Dim>& order, Particles<Dim, Real>& particles);
   void find_boxes(const ClusterOrder<Dim>& order, Particles<Dim, Real>& particles, std::size_t first_cluster);
   void number_shifts(const ClusterOrder<Dim>& order);
@@ -82,5 +109,34 @@ template <int Dim, class Real> class ClusterList {
   std::vector<ClusterChunk> chunks_, warm_chunks_;
   bool warm_listed_ = false;
 };
+
+template <int Dim, class Real>
+template <class F>
+void ClusterList<Dim, Real>::for_each(const ClusterChunk& chunk, const ClusterOrder<Dim>& order, int shell,
+                                      F&& f) const {
+  constexpr int along = Grid<Dim>::along;
+  std::size_t longest = 0;
+  for (std::size_t r = 0; r + 1 < chunk.rows.size(); ++r) longest = std::max(longest, chunk.entries_of(r));
+  const std::size_t room = longest + ClusterChunk::mask_bits;
+  std::vector<ListEntry> lists(clusters_a_row * room);
+  std::array<std::size_t, clusters_a_row> lengths;
+  for (std::size_t r = 0; r + 1 < chunk.rows.size(); ++r) {
+    const ClusterChunk::Row& row = chunk.rows[r];
+    const std::uint32_t first = row.first_cluster, count = chunk.rows[r + 1].first_cluster - first;
+    const std::size_t words = ClusterChunk::words(chunk.entries_of(r));
+    // All lists of the row before the first is used: what comes after one list's last pair then waits for nothing.
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::int32_t further = order.cells[first + k][along] - order.cells[first][along];
+      lengths[k] = select_less_by(chunk.entries.data() + row.first_entry,
+                                  chunk.masks.data() + row.first_mask + (k * shells + shell) * words, words,
+                                  shifts_.seen_from(further), lists.data() + k * room);
+    }
+    const ClusterChunk::Row& next = chunk.rows[r + 1];
+    prefetch(chunk.entries.data() + next.first_entry, longest);
+    prefetch(chunk.masks.data() + next.first_mask, clusters_a_row * shells * words);
+    for (std::uint32_t k = 0; k < count; ++k)
+      f(first + k, std::span<const ListEntry>(lists.data() + k * room, lengths[k]));
+  }
+}
 
 }  // namespace molten

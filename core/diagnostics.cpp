@@ -185,9 +185,9 @@ template <int Dim, class Real> std::int64_t count_pairs(const State<Dim, Real>& 
   const double support2 = s.parameters.support_radius * s.parameters.support_radius;
   std::vector<std::int64_t> counts(chunks.size(), 0);
   for_each_piece(chunks.size(), [&](std::size_t k) {
-    const ClusterChunk& chunk = chunks[k];
-    for (std::uint32_t c = chunk.begin; c < chunk.end; ++c)
-      for (const ListEntry e : chunk.of(c)) counts[k] += count_between(s, c, e, support2);
+    s.neighbours.for_each_list(chunks[k], [&](std::uint32_t c, std::span<const ListEntry> list) {
+      for (const ListEntry e : list) counts[k] += count_between(s, c, e, support2);
+    });
   });
   return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
 }

@@ -53,8 +53,8 @@ template <int Dim> struct Grid {
   double origin(int d, std::int32_t cell) const { return lower[d] + (cell + 0.5) * width[d]; }
 
   /// Rounds to the quantum.
-  double on_quantum(double x) const {
-    const double magic = 6755399441055744.0 * quantum;  // 1.5 · 2⁵²: adding it leaves multiples of the quantum
+  template <class T> T on_quantum(const T& x) const {
+    const T magic(6755399441055744.0 * quantum);  // 1.5 · 2⁵²: adding it leaves multiples of the quantum
     return (x + magic) - magic;
   }
   /// Where a cell `offset` cells further along axis d has its origin (m).

@@ -6,6 +6,7 @@
 // Symplectic Euler: v^{n+1} = v^n + dt a^n, x += dt v^{n+1}; the density follows the positions, so its rate is
 // extrapolated to the velocity that moved them, ρ'^n + (1+β)(ρ'^n − ρ'^{n−1}) − β(ρ'^{n−1} − ρ'^{n−2}), which is stable
 // for 0.6 ≤ β ≤ 1.
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -20,7 +21,11 @@ namespace molten {
 
 namespace {
 
+/// Four particles at once: the pass is bound by memory, and one by one by instructions. What is padding has no rates,
+/// so it stays at zero.
 template <int Dim, class Real> class Integrator {
+  using Wide = ClusterLanes;
+
  public:
   explicit Integrator(State<Dim, Real>& s, double previous_dt)
       : s_(s),
@@ -30,24 +35,36 @@ template <int Dim, class Real> class Integrator {
         stretch_(previous_dt > 0 ? dt_ / previous_dt : 0),
         mover_(s) {}
 
-  /// Moves one particle; returns the square of its displacement (m²). `kicks`: what bodies give to it is added.
-  double advance(std::size_t slot, std::span<Kick<Dim>> kicks) const {
-    if (ids_[slot] == padding_id) return 0;
-    if (inlet_ && inlet_[slot] >= 0) return advance_in_vent(slot);
-    Motion<Dim> motion = kicked(slot);
-    const Point<Dim> before = motion.position;
-    const bool bounced = mover_.move(slot, motion, kicks);
-    store(slot, motion, bounced);
+  /// Moves the particles of a cluster; returns the square of the longest displacement (m²). `kicks`: what bodies give
+  /// to them is added.
+  double advance(std::size_t cluster, std::span<Kick<Dim>> kicks) const {
+    const std::size_t slot = cluster * cluster_size;
+    ClusterMotion<Dim> motion = kicked(slot);
+    const Vec<Dim, Wide> before = motion.position;
+    Wide bounced = mover_.move_cluster(cluster, motion, kicks);
+    if (inlet_) push(slot, before, motion, bounced);
+    keep(slot, motion, bounced);
     advance_compression(slot);
-    if (s_.features.internal_energy) internal_energy_[slot] += kick_ * internal_energy_rate_[slot];
-    if (s_.features.heat) temperature_[slot] += dt_ * temperature_rate_[slot];
+    if (s_.features.internal_energy) add(internal_energy_ + slot, kick_, internal_energy_rate_ + slot);
+    if (s_.features.heat) add(temperature_ + slot, dt_, temperature_rate_ + slot);
     if (s_.features.sleep) count_rest(slot);
-    return (motion.position - before).squaredNorm();
+    const Vec<Dim, Wide> way = motion.position - before;
+    return largest(dot(way, way));
   }
 
  private:
+  static Wide read(const Real* from) { return load_double<cluster_size>(from); }
+  static void write(const Wide& value, Real* to) { store_rounded(value, to); }
+  static void add(double* quantity, double time, const Real* rate) {
+    store(load<cluster_size>(quantity) + Wide(time) * read(rate), quantity);
+  }
+
   /// How long motion, and heat, have been within the bounds of rest.
-  void count_rest(std::size_t slot) const {
+  void count_rest(std::size_t first) const {
+    for (std::size_t slot = first; slot < first + cluster_size; ++slot)
+      if (!p_.is_padding(slot) && !(inlet_ && inlet_[slot] >= 0)) count_rest_of(slot);
+  }
+  void count_rest_of(std::size_t slot) const {
     const RestBounds& bounds = *s_.parameters.rest;
     const auto count = [this](Real& time, bool at_rest) { time = at_rest ? time + static_cast<Real>(dt_) : 0; };
     double v2 = 0;
@@ -58,60 +75,67 @@ template <int Dim, class Real> class Integrator {
     if (rest_temperature_) rest_temperature_[slot] = static_cast<Real>(temperature_[slot]);
   }
 
-  Motion<Dim> kicked(std::size_t slot) const {
-    Motion<Dim> m;
+  ClusterMotion<Dim> kicked(std::size_t slot) const {
+    ClusterMotion<Dim> m;
     const auto& v = s_.features.integrator == IntegratorKind::leap_frog ? half_velocity_.c : velocity_.c;
     for (int d = 0; d < Dim; ++d) {
-      m.position[d] = position_[d][slot];
-      m.velocity[d] = v[d][slot] + kick_ * acceleration_[d][slot];
+      m.position[d] = load<cluster_size>(position_[d] + slot);
+      m.velocity[d] = read(v[d] + slot) + Wide(kick_) * read(acceleration_[d] + slot);
       m.rate[d] = m.velocity[d];
-      if (s_.features.shifting) m.rate[d] += shift_velocity_[d][slot];
+      if (s_.features.shifting) m.rate[d] += read(shift_velocity_[d] + slot);
       if (!s_.features.xsph) continue;
-      const double correction = s_.parameters.xsph * xsph_[d][slot];
+      const Wide correction = Wide(s_.parameters.xsph) * read(xsph_[d] + slot);
       m.rate[d] += correction;
       if (s_.parameters.xsph_form == Xsph::Form::velocity) m.velocity[d] += correction;
     }
     return m;
   }
 
-  /// The vent moves it like a piston; walls do not concern it, and its temperature stays what it entered with.
-  double advance_in_vent(std::size_t slot) const {
-    const Point<Dim> way = s_.vents.way(static_cast<std::size_t>(inlet_[slot]), s_.clock.time, dt_);
-    Motion<Dim> m;
-    for (int d = 0; d < Dim; ++d) m.position[d] = position_[d][slot] + way[d];
-    m.velocity = way / dt_;
-    store(slot, m, true);
-    advance_compression(slot);
-    if (s_.vents.has_left(static_cast<std::size_t>(inlet_[slot]), m.position)) inlet_[slot] = -1;
-    return way.squaredNorm();
+  /// A vent moves what is in it like a piston; walls do not concern it, and its temperature stays what it entered with.
+  void push(std::size_t first, const Vec<Dim, Wide>& before, ClusterMotion<Dim>& m, Wide& bounced) const {
+    for (int n = 0; n < cluster_size; ++n) {
+      const std::size_t slot = first + n;
+      if (inlet_[slot] < 0) continue;
+      const auto vent = static_cast<std::size_t>(inlet_[slot]);
+      const Point<Dim> way = s_.vents.way(vent, s_.clock.time, dt_);
+      Point<Dim> after;
+      for (int d = 0; d < Dim; ++d) {
+        after[d] = lane(before[d], n) + way[d];
+        set_lane(m.position[d], n, after[d]);
+        set_lane(m.velocity[d], n, way[d] / dt_);
+      }
+      set_lane(bounced, n, 1.0);
+      if (temperature_rate_) temperature_rate_[slot] = 0;
+      if (s_.vents.has_left(vent, after)) inlet_[slot] = -1;
+    }
   }
 
-  void store(std::size_t slot, const Motion<Dim>& m, bool bounced) const {
+  void keep(std::size_t slot, const ClusterMotion<Dim>& m, const Wide& bounced) const {
     const bool leap_frog = s_.features.integrator == IntegratorKind::leap_frog;
+    // The wall has already had its say on a particle that bounced.
+    const Wide ahead = leap_frog ? Wide(dt_ / 2) * (Wide(1.0) - bounced) : Wide(0.0);
     for (int d = 0; d < Dim; ++d) {
-      position_[d][slot] = m.position[d];
-      if (leap_frog) half_velocity_[d][slot] = static_cast<Real>(m.velocity[d]);
-      // The wall has already had its say on a particle that bounced.
-      const double ahead = leap_frog && !bounced ? dt_ / 2 * acceleration_[d][slot] : 0;
-      velocity_[d][slot] = static_cast<Real>(m.velocity[d] + ahead);
+      store(m.position[d], position_[d] + slot);
+      if (leap_frog) write(m.velocity[d], half_velocity_[d] + slot);
+      write(m.velocity[d] + ahead * read(acceleration_[d] + slot), velocity_[d] + slot);
     }
   }
 
   void advance_compression(std::size_t slot) const {
-    const double rate = compression_rate_[slot];
-    const double rise = stretch_ * (rate - previous_rate_[slot]);  // of the rate, from this step to the next
+    const Wide rate = read(compression_rate_ + slot), previous = read(previous_rate_ + slot), dt(dt_);
+    const Wide rise = Wide(stretch_) * (rate - previous);  // of the rate, from this step to the next
     if (s_.features.integrator == IntegratorKind::leap_frog) {
-      const double half = half_compression_[slot] + kick_ * rate;
-      half_compression_[slot] = static_cast<Real>(half);
-      compression_[slot] = static_cast<Real>(half + dt_ / 2 * (rate + rise));
+      const Wide half = read(half_compression_ + slot) + Wide(kick_) * rate;
+      write(half, half_compression_ + slot);
+      write(half + Wide(dt_ / 2) * (rate + rise), compression_ + slot);
     } else {
-      constexpr double beta = 0.8;
-      const double earlier_rise = s_.clock.step > 1 ? double(previous_rate_[slot]) - older_rate_[slot] : rise;
-      compression_[slot] =
-          static_cast<Real>(compression_[slot] + dt_ * (rate + (1 + beta) * rise - beta * earlier_rise));
-      older_rate_[slot] = previous_rate_[slot];
+      const Wide beta(0.8);
+      const Wide earlier_rise = s_.clock.step > 1 ? previous - read(older_rate_ + slot) : rise;
+      write(read(compression_ + slot) + dt * (rate + (Wide(1.0) + beta) * rise - beta * earlier_rise),
+            compression_ + slot);
+      write(previous, older_rate_ + slot);
     }
-    previous_rate_[slot] = static_cast<Real>(rate);
+    write(rate, previous_rate_ + slot);
   }
 
   State<Dim, Real>& s_;
@@ -119,7 +143,6 @@ template <int Dim, class Real> class Integrator {
   double dt_, kick_;
   double stretch_;  // dt over the one before; 0 at the first step
   Mover<Dim, Real> mover_;
-  const std::int64_t* ids_ = p_[id][0];
   Column<Position, Dim, double> position_ = p_[position];
   Column<Velocity, Dim, Real> velocity_ = p_[velocity];
   Column<HalfVelocity, Dim, Real> half_velocity_ = p_[half_velocity];
@@ -132,7 +155,7 @@ template <int Dim, class Real> class Integrator {
   Real* older_rate_ = p_[older_compression_rate][0];
   const Real* compression_rate_ = p_[compression_rate][0];
   double* temperature_ = p_[temperature][0];
-  const Real* temperature_rate_ = p_[temperature_rate][0];
+  Real* temperature_rate_ = p_[temperature_rate][0];
   double* internal_energy_ = p_[internal_energy][0];
   const Real* internal_energy_rate_ = p_[internal_energy_rate][0];
   Real* rest_time_ = p_[rest_time][0];
@@ -155,16 +178,18 @@ template <int Dim> struct Moved {
   }
 };
 
-/// What the pair passes read of one particle, from its state.
+/// What the pair passes read of a cluster's particles, from their state.
 template <int Dim, class Real> class Preparation {
  public:
   explicit Preparation(State<Dim, Real>& s) : s_(s) {}
 
-  void of(std::size_t slot) const {
-    s_.neighbours.localise(s_.particles, slot);
-    pressure_term_[slot] = static_cast<Real>(s_.parameters.eos.term(compression_[slot]));
+  void of(std::size_t cluster) const {
+    const std::size_t slot = cluster * cluster_size;
+    s_.neighbours.localise(s_.particles, cluster);
+    store_rounded(s_.parameters.eos.term(load_double<cluster_size>(compression_ + slot)), pressure_term_ + slot);
     if (s_.features.heat)
-      local_temperature_[slot] = static_cast<Real>(temperature_[slot] - s_.parameters.reference_temperature);
+      store_rounded(load<cluster_size>(temperature_ + slot) - ClusterLanes(s_.parameters.reference_temperature),
+                    local_temperature_ + slot);
   }
 
  private:
@@ -185,9 +210,9 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   if (s.features.bodies) s.bodies.begin_step(s.contact, s.clock.time, s.clock.dt, s.parameters.gravity);
   const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
   const Preparation<Dim, Real> preparation(s);
-  const std::size_t first = s.neighbours.first_slot(Block::active);
+  const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
   const Moved<Dim> moved = reduce_slots(
-      s.particles.slots() - first, Moved<Dim>{0, std::vector<Kick<Dim>>(s.bodies.count())},
+      s.neighbours.clusters() - first, Moved<Dim>{0, std::vector<Kick<Dim>>(s.bodies.count())},
       [&](std::size_t k, Moved<Dim>& all) {
         all.way2 = std::max(all.way2, integrator.advance(first + k, all.kicks));
         preparation.of(first + k);
@@ -201,9 +226,10 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   if (s.features.bodies) s.bodies.end_step(moved.kicks, s.parameters.particle_mass);
 }
 
-template <int Dim, class Real> void prepare(State<Dim, Real>& s, std::size_t first) {
+template <int Dim, class Real> void prepare(State<Dim, Real>& s, std::size_t first_slot) {
   const Preparation<Dim, Real> preparation(s);
-  for_each_slot(s.particles.slots() - first, [&](std::size_t k) { preparation.of(first + k); });
+  const std::size_t first = first_slot / cluster_size;
+  for_each_slot(s.neighbours.clusters() - first, [&](std::size_t k) { preparation.of(first + k); });
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)                     \

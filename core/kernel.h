@@ -64,7 +64,7 @@ template <class T> ShapeAndSlope<T> uncommon_shape(KernelKind kind, T q) {
   const T one(1), zero(0), safe = max(q, T(1e-6));
   switch (kind) {
     case KernelKind::gaussian: {
-      const T w = select_less(q, T(3), exp_of(-(q * q)), zero);
+      const T w = select_less(q, T(3), each_lane(-(q * q), [](auto x) { return std::exp(x); }), zero);
       return {w, T(-2) * w};
     }
     case KernelKind::quadratic: {

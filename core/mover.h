@@ -4,23 +4,63 @@
 #include <cmath>
 #include <span>
 
+#include "core/simd.h"
 #include "core/state.h"
 
 namespace molten {
+
+/// The particles of a cluster, for arithmetic in double.
+using ClusterLanes = Lanes<double, cluster_size>;
+
+/// Motion of a cluster's particles.
+template <int Dim> struct ClusterMotion {
+  Vec<Dim, ClusterLanes> position, velocity, rate;  // m, m/s, m/s
+};
 
 template <int Dim, class Real> class Mover {
  public:
   explicit Mover(const State<Dim, Real>& s)
       : s_(s), always_collide_(s.features.contact && longest_way() > s.parameters.spacing) {}
 
-  /// Moves one particle by a step along its rate; says whether it bounced. `kicks`: what bodies give to it is added.
-  bool move(std::size_t slot, Motion<Dim>& m, std::span<Kick<Dim>> kicks = {}) const {
-    if (always_collide_ || s_.near_wall[slot / cluster_size]) return s_.contact.move(m, s_.clock.dt, kicks) > 0;
+  /// Moves one particle by a step along its rate; says whether it bounced.
+  bool move(std::size_t slot, Motion<Dim>& m) const {
+    if (may_collide(slot / cluster_size)) return s_.contact.move(m, s_.clock.dt) > 0;
     m.position += s_.clock.dt * m.rate;
     return false;
   }
 
+  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent moves, does not count.
+  /// `kicks`: what bodies give to particles is added.
+  ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
+    ClusterLanes bounced(0.0);
+    if (may_collide(cluster)) {
+      for (int n = 0; n < cluster_size; ++n)
+        if (may_bounce(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(m, n, kicks)));
+    } else {
+      m.position += ClusterLanes(s_.clock.dt) * m.rate;
+    }
+    return bounced;
+  }
+
  private:
+  bool may_collide(std::size_t cluster) const { return always_collide_ || s_.near_wall[cluster]; }
+  bool may_bounce(std::size_t slot) const { return !s_.particles.is_padding(slot) && !(inlet_ && inlet_[slot] >= 0); }
+
+  bool collide(ClusterMotion<Dim>& of, int n, std::span<Kick<Dim>> kicks) const {
+    Motion<Dim> m;
+    for (int d = 0; d < Dim; ++d) {
+      m.position[d] = lane(of.position[d], n);
+      m.velocity[d] = lane(of.velocity[d], n);
+      m.rate[d] = lane(of.rate[d], n);
+    }
+    const bool bounced = s_.contact.move(m, s_.clock.dt, kicks) > 0;
+    for (int d = 0; d < Dim; ++d) {
+      set_lane(of.position[d], n, m.position[d]);
+      set_lane(of.velocity[d], n, m.velocity[d]);
+    }
+    return bounced;
+  }
+
   /// No particle gets further from where it was sorted than this (m), and no body nearer to it.
   double longest_way() const {
     const double flow = std::sqrt(s_.extremes.speed2), dt = s_.clock.dt;
@@ -31,6 +71,7 @@ template <int Dim, class Real> class Mover {
 
   const State<Dim, Real>& s_;
   bool always_collide_;
+  const std::int64_t* inlet_ = s_.particles[inlet][0];  // null without vents
 };
 
 }  // namespace molten

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/particle_pass.h"
+#include "core/simd.h"
 
 namespace molten {
 
@@ -142,14 +143,19 @@ template <int Dim, class Real> void Neighbours<Dim, Real>::choose_quantum() {
 }
 
 template <int Dim, class Real>
-void Neighbours<Dim, Real>::localise(Particles<Dim, Real>& particles, std::size_t slot) const {
+void Neighbours<Dim, Real>::localise(Particles<Dim, Real>& particles, std::size_t cluster) const {
+  using Wide = Lanes<double, cluster_size>;
   const auto local = particles[local_position];
   const auto x = particles[position];
-  const bool padding = particles.is_padding(slot);
-  const Cell<Dim>& c = order_.cells[slot / cluster_size];
-  for (int d = 0; d < Dim; ++d)
-    local[d][slot] = static_cast<Real>(padding ? far_away * settings_.spacing
-                                               : order_.grid.on_quantum(x[d][slot] - order_.grid.origin(d, c[d])));
+  const std::size_t slot = cluster * cluster_size;
+  const Cell<Dim>& c = order_.cells[cluster];
+  for (int d = 0; d < Dim; ++d) {
+    const Wide from_origin = load<cluster_size>(x[d] + slot) - Wide(order_.grid.origin(d, c[d]));
+    store_rounded(order_.grid.on_quantum(from_origin), local[d] + slot);
+  }
+  for (std::size_t k = slot; k < slot + cluster_size; ++k)
+    if (particles.is_padding(k))
+      for (int d = 0; d < Dim; ++d) local[d][k] = static_cast<Real>(far_away * settings_.spacing);
 }
 
 // ---- order ----------------------------------------------------------------------------------------------------------
@@ -166,7 +172,8 @@ void Neighbours<Dim, Real>::sort(Particles<Dim, Real>& particles, std::size_t fi
   const std::size_t outside = sort_columns(particles, first_pile, block_of);
   dropped_ += outside;
   particles.permute(cluster_order(first_pile), particles.count() - outside, first);
-  for_each_slot(particles.slots() - first, [&](std::size_t k) { localise(particles, first + k); });
+  const std::size_t first_cluster = first / cluster_size;
+  for_each_slot(order_.clusters() - first_cluster, [&](std::size_t k) { localise(particles, first_cluster + k); });
 }
 
 /// Fills entries_ pile by pile, each sorted along the column; ties by id, so that the order depends on state alone.

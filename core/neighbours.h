@@ -47,14 +47,19 @@ template <int Dim, class Real> class Neighbours {
   std::span<const ClusterChunk> warm_chunks(const Particles<Dim, Real>& particles) {
     return list_.warm_chunks(order_, particles);
   }
+  /// f(cluster, its list as a span of ListEntry) for the clusters of a chunk, in order. The list holds all pairs while
+  /// displacement() is right.
+  template <class F> void for_each_list(const ClusterChunk& chunk, F&& f) const {
+    list_.for_each(chunk, order_, list_.shell(displacement_), std::forward<F>(f));
+  }
   const ShiftTable<Dim>& shifts() const { return list_.shifts(); }
   const Cell<Dim>& cell(std::size_t cluster) const { return order_.cells[cluster]; }
   std::size_t clusters() const { return order_.clusters(); }
   std::size_t dropped() const { return dropped_; }  // particles that have left the domain so far
   std::size_t bytes() const;
 
-  /// Sets a slot's local position from its position; padding goes far away.
-  void localise(Particles<Dim, Real>& particles, std::size_t slot) const;
+  /// Sets the local positions of a cluster's particles from their positions; padding goes far away.
+  void localise(Particles<Dim, Real>& particles, std::size_t cluster) const;
 
   void archive(Archive& a);
   /// After loading: lists the neighbours again for the restored order. The list may differ from the stored run's in

@@ -152,9 +152,9 @@ template <int N, int Dim, class Real, class KernelType, class Finish, class... T
  private:
   void run_chunk(const ClusterChunk& chunk, std::size_t number) const {
     auto finish = finish_.for_chunk(number);
-    for (std::uint32_t c = chunk.begin; c < chunk.end; ++c) {
-      for (int i = 0; i < cluster_size; i += I) sum_up(std::size_t{c} * cluster_size + i, chunk.of(c), finish);
-    }
+    neighbours_.for_each_list(chunk, [&](std::uint32_t c, std::span<const ListEntry> list) {
+      for (int i = 0; i < cluster_size; i += I) sum_up(std::size_t{c} * cluster_size + i, list, finish);
+    });
   }
 
   /// The sums of I particles from `slot` on.

@@ -32,11 +32,13 @@ template <int Dim, class Real> auto viscosity_finish(State<Dim, Real>& s) {
 template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("viscosity");
   const auto finish = viscosity_finish(s);
-  const StrainRateTerm term{s.features.gradient_correction};
-  with_run_kernel(s, [&](const auto& kernel) {
-    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel,
-                                  WithWalls(s.wall_support, s.parameters, s.particles, finish, term), term);
-  });
+  const auto pass = [&](const auto& term) {
+    with_run_kernel(s, [&](const auto& kernel) {
+      pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel,
+                                    WithWalls(s.wall_support, s.parameters, s.particles, finish, term), term);
+    });
+  };
+  s.features.gradient_correction ? pass(CorrectedStrainRateTerm{}) : pass(StrainRateTerm{});
 }
 
 template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {

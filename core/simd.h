@@ -6,8 +6,10 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <type_traits>
 
@@ -170,13 +172,15 @@ template <class Real, int N> inline Lanes<Real, N> affine_root(Lanes<Real, N> a,
   }
 }
 
-template <class Real, int N> inline Lanes<Real, N> exp_of(Lanes<Real, N> a) {
+/// f of each lane, where no instruction does it.
+template <class F> inline double each_lane(double a, F&& f) { return f(a); }
+template <class Real, int N, class F> inline Lanes<Real, N> each_lane(Lanes<Real, N> a, F&& f) {
   if constexpr (N == 1)
-    return std::exp(a.v);
+    return f(a.v);
   else {
-    Lanes<Real, N> e;
-    for (int k = 0; k < N; ++k) e.v[k] = std::exp(a.v[k]);
-    return e;
+    Lanes<Real, N> r;
+    for (int k = 0; k < N; ++k) r.v[k] = f(a.v[k]);
+    return r;
   }
 }
 
@@ -249,6 +253,20 @@ template <int N, class Real> inline Lanes<Real, N> load(const Real* p) {
 }
 template <class Real, int N> inline void store(Lanes<Real, N> a, Real* p) { std::memcpy(p, &a.v, sizeof a.v); }
 
+/// The same as doubles, whatever is stored.
+template <int N, class Real> inline Lanes<double, N> load_double(const Real* p) {
+  if constexpr (sizeof(Real) == sizeof(double))
+    return load<N>(p);
+  else
+    return {__builtin_convertvector(load<N>(p).v, typename Lanes<double, N>::Native)};
+}
+template <class Real, int N> inline void store_rounded(Lanes<double, N> a, Real* p) {
+  if constexpr (sizeof(Real) == sizeof(double))
+    store(a, p);
+  else
+    store(Lanes<Real, N>(__builtin_convertvector(a.v, typename Lanes<Real, N>::Native)), p);
+}
+
 template <class Real, int N> inline Real lane(Lanes<Real, N> a, int k) {
   if constexpr (N == 1)
     return a.v;
@@ -281,6 +299,59 @@ template <class Real, int N> inline Real largest(Lanes<Real, N> a) {
   Real most = lane(a, 0);
   for (int k = 0; k < N; ++k) most = lane(a, k) <= most ? most : lane(a, k) == lane(a, k) ? lane(a, k) : INFINITY;
   return most == most ? most : INFINITY;
+}
+
+// ---- lists of numbers -----------------------------------------------------------------------------------------------
+
+/// Asks for this memory, or what may follow its end, ahead of time.
+template <class T> inline void prefetch(const T* p, std::size_t count) {
+  constexpr std::size_t line = 64;  // bytes
+  for (std::size_t k = 0; k < count * sizeof(T); k += line) __builtin_prefetch(reinterpret_cast<const char*>(p) + k);
+}
+
+/// Writes first + k for each bit k of the mask, in order, and returns how many; 8 numbers are written over.
+inline int write_set_bits(unsigned mask, std::uint32_t first, std::uint32_t* to) {
+#if defined(__AVX512VL__)
+  const __m256i numbers =
+      _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                      _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), numbers));
+  return std::popcount(mask);
+#else
+  int count = 0;
+  for (; mask; mask &= mask - 1) to[count++] = first + static_cast<std::uint32_t>(std::countr_zero(mask));
+  return count;
+#endif
+}
+
+/// Copies those numbers whose bits are set, less `by`; returns how many. Reads and writes up to 16 beyond the last.
+inline std::size_t select_less_by(const std::uint32_t* from, const std::uint16_t* masks, std::size_t words,
+                                  std::uint32_t by, std::uint32_t* to) {
+  std::size_t count = 0;
+  for (std::size_t w = 0; w < words; ++w) {
+#if defined(__AVX512F__)
+    const __m512i numbers = _mm512_maskz_sub_epi32(0xffff, _mm512_loadu_si512(from + 16 * w),
+                                                   _mm512_maskz_set1_epi32(0xffff, static_cast<int>(by)));
+    _mm512_storeu_si512(to + count, _mm512_maskz_compress_epi32(masks[w], numbers));
+    count += static_cast<std::size_t>(std::popcount(masks[w]));
+#else
+    for (unsigned mask = masks[w]; mask; mask &= mask - 1)
+      to[count++] = from[16 * w + static_cast<unsigned>(std::countr_zero(mask))] - by;
+#endif
+  }
+  return count;
+}
+
+/// Bit k: does flags[k] have this bit? Of 16.
+inline std::uint16_t gather_bit(const std::uint16_t* flags, int bit) {
+#if defined(__AVX512BW__) && defined(__AVX512VL__)
+  return _mm256_test_epi16_mask(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(flags)),
+                                _mm256_set1_epi16(static_cast<short>(1 << bit)));
+#else
+  unsigned mask = 0;
+  for (int k = 0; k < 16; ++k) mask |= (flags[k] >> bit & 1u) << k;
+  return static_cast<std::uint16_t>(mask);
+#endif
 }
 
 }  // namespace molten

@@ -49,8 +49,8 @@ template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s);
 /// passes read.
 template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s);
 
-/// Temperature and pressure columns that passes read, from the state, of the slots from `first` on; for the start of a
-/// run and after a sort.
-template <int Dim, class Real> void prepare(State<Dim, Real>& s, std::size_t first = 0);
+/// Temperature and pressure columns that passes read, from the state, of the slots from `first_slot` on; for the start
+/// of a run and after a sort.
+template <int Dim, class Real> void prepare(State<Dim, Real>& s, std::size_t first_slot = 0);
 
 }  // namespace molten

@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
+#include "core/particle_pass.h"
 #include "core/step.h"
 
 namespace molten {
@@ -114,6 +116,52 @@ template <> std::vector<Point<3>> disc_offsets(const Point<3>& normal, double ra
 
 namespace {
 
+/// What waits in a vent takes the pressure of the fluid before it, as if that were at rest: δ = a + g·x/c² (the density
+/// of open boundaries; Tafuni et al. 2018). Returns a; nothing as long as nothing
+/// has come out.
+template <int Dim, class Real> std::optional<double> pressure_before(const State<Dim, Real>& s, std::size_t vent) {
+  struct Mean {
+    double sum = 0, count = 0;
+  };
+  const VentPatch<Dim>& patch = s.vents.patch(vent);
+  double wide = 0;
+  for (const Point<Dim>& offset : patch.offsets) wide = std::max(wide, offset.norm() + s.parameters.spacing / 2);
+  const double c2 = s.parameters.eos.sound_speed * s.parameters.eos.sound_speed;
+  const auto x = s.particles[position];
+  const auto inlets = s.particles[inlet][0];
+  const auto delta = s.particles[compression][0];
+  const Mean mean = reduce_slots(
+      s.particles.slots(), Mean{},
+      [&](std::size_t slot, Mean& m) {
+        if (inlets[slot] >= 0 || s.particles.is_padding(slot)) return;
+        Point<Dim> at;
+        double head = 0;  // m²/s²
+        for (int d = 0; d < Dim; ++d)
+          at[d] = x[d][slot] - patch.centre[d], head += s.parameters.gravity[d] * x[d][slot];
+        const double height = at.dot(patch.normal);
+        if (height < 0 || height > s.parameters.support_radius || (at - height * patch.normal).norm() > wide) return;
+        m.sum += delta[slot] - head / c2;
+        ++m.count;
+      },
+      [](Mean& a, const Mean& b) { a.sum += b.sum, a.count += b.count; });
+  if (mean.count == 0) return std::nullopt;
+  return mean.sum / mean.count;
+}
+
+template <int Dim, class Real> void set_pressure(State<Dim, Real>& s, std::size_t vent) {
+  Particles<Dim, Real>& p = s.particles;
+  const std::optional<double> a = pressure_before(s, vent);
+  if (!a) return;
+  const double c2 = s.parameters.eos.sound_speed * s.parameters.eos.sound_speed;
+  for_each_slot(p.slots(), [&](std::size_t slot) {
+    if (p[inlet][0][slot] != static_cast<std::int64_t>(vent)) return;
+    double delta = *a;
+    for (int d = 0; d < Dim; ++d) delta += s.parameters.gravity[d] * p[position][d][slot] / c2;
+    p[compression][0][slot] = static_cast<Real>(delta);
+    if (p.has(half_compression)) p[half_compression][0][slot] = static_cast<Real>(delta);
+  });
+}
+
 template <int Dim, class Real> void insert_layer(State<Dim, Real>& s, std::size_t vent, const Point<Dim>& middle) {
   const VentPatch<Dim>& patch = s.vents.patch(vent);
   Particles<Dim, Real>& p = s.particles;
@@ -149,6 +197,7 @@ template <int Dim, class Real> void emit(State<Dim, Real>& s) {
   for (std::size_t k = 0; k < s.vents.count(); ++k)
     while (s.vents.next_layer(k, middle)) {
       insert_layer(s, k, middle);
+      set_pressure(s, k);
       s.neighbours.expire();
     }
 }

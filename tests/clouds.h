@@ -104,8 +104,8 @@ template <int Dim, class Real> std::vector<ImagePair<Dim>> brute_pairs(const Clo
 template <int Dim, class Real, class F> void for_each_listed(const Cloud<Dim, Real>& c, F&& f) {
   const auto local = c.particles[local_position];
   for (const ClusterChunk& chunk : c.neighbours.chunks())
-    for (std::uint32_t cluster = chunk.begin; cluster < chunk.end; ++cluster)
-      for (const ListEntry entry : chunk.of(cluster)) {
+    c.neighbours.for_each_list(chunk, [&](std::uint32_t cluster, std::span<const ListEntry> list) {
+      for (const ListEntry entry : list) {
         const std::uint32_t first = c.neighbours.shifts().cluster(entry) * cluster_size;
         const auto& shift = c.neighbours.shifts().of(entry);
         for (std::uint32_t i = cluster * cluster_size; i < (cluster + 1) * cluster_size; ++i)
@@ -116,6 +116,7 @@ template <int Dim, class Real, class F> void for_each_listed(const Cloud<Dim, Re
             f(i, j, v);
           }
       }
+    });
 }
 
 /// The listed pairs with their images, sorted; those far out of reach are left out.

@@ -91,8 +91,21 @@ template <int Dim, class Real> void expect_ordered(const Cloud<Dim, Real>& c) {
   EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
 }
 
-template <int Dim, class Real> void expect_good(const Cloud<Dim, Real>& c) {
-  expect_complete(c, c.settings.support_radius + c.settings.skin);
+/// Whatever the particles may have moved, all pairs are listed that can have come within the support.
+template <int Dim, class Real> void expect_complete_shells(Cloud<Dim, Real>& c, double accuracy = 1e-6) {
+  double moved = 0;
+  for (int s = 1; s <= shells; ++s) {
+    const double way = 0.5 * (1 - 1e-6) * c.settings.skin * s / shells;
+    c.neighbours.moved(way - moved);
+    moved = way;
+    EXPECT_FALSE(c.neighbours.is_due());
+    SCOPED_TRACE(s);
+    expect_complete(c, c.settings.support_radius + c.settings.skin * s / shells, accuracy);
+  }
+}
+
+template <int Dim, class Real> void expect_good(Cloud<Dim, Real>& c) {
+  expect_complete_shells(c);
   expect_antisymmetric(c);
   expect_ordered(c);
 }
@@ -102,7 +115,7 @@ TYPED_TEST_SUITE(NeighboursOf, Flavours, FlavourNames);
 
 TYPED_TEST(NeighboursOf, Lattice) {
   MOLTEN_FLAVOUR;
-  const Cloud<Dim, Real> c(cube<Dim>(Dim == 2 ? 25 : 10, 0.1), 0.1, domain_between<Dim>(-10, 10));
+  Cloud<Dim, Real> c(cube<Dim>(Dim == 2 ? 25 : 10, 0.1), 0.1, domain_between<Dim>(-10, 10));
   expect_good(c);
   EXPECT_EQ(naive_pairs(c.particles, c.domain.periodic, c.settings.support_radius).size(),
             brute_pairs(c, c.settings.support_radius).size());
@@ -114,7 +127,8 @@ TYPED_TEST(NeighboursOf, RandomAndCoincident) {
   Points points = random_points<Dim>(static_cast<int>(std::pow(cells, Dim)), 0, 0.1 * cells);
   points[1] = points[0];
   points[3][0] = points[2][0];
-  expect_good(Cloud<Dim, Real>(points, 0.1, domain_between<Dim>(-10, 10)));
+  Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(-10, 10));
+  expect_good(c);
 }
 
 TYPED_TEST(NeighboursOf, EachAxisPeriodic) {
@@ -123,7 +137,8 @@ TYPED_TEST(NeighboursOf, EachAxisPeriodic) {
   for (int axes = 1; axes < 1 << Dim; ++axes) {
     SCOPED_TRACE(axes);
     const auto domain = domain_between<Dim>(0, cells * 0.1, {bool(axes & 1), bool(axes & 2), bool(axes & 4)});
-    expect_good(Cloud<Dim, Real>(cube<Dim>(cells, 0.1, 0.4), 0.1, domain));
+    Cloud<Dim, Real> c(cube<Dim>(cells, 0.1, 0.4), 0.1, domain);
+    expect_good(c);
   }
 }
 
@@ -135,7 +150,8 @@ TYPED_TEST(NeighboursOf, ShortPeriods) {
     SCOPED_TRACE(period);
     const int count = static_cast<int>(std::pow(period, Dim));
     const auto domain = domain_between<Dim>(-0.3, 0.1 * period - 0.3, {true, true, true});
-    expect_good(Cloud<Dim, Real>(random_points<Dim>(count, -0.3, 0.1 * period - 0.3), 0.1, domain));
+    Cloud<Dim, Real> c(random_points<Dim>(count, -0.3, 0.1 * period - 0.3), 0.1, domain);
+    expect_good(c);
   }
 }
 
@@ -145,7 +161,7 @@ TYPED_TEST(NeighboursOf, SparseWithFarOutliers) {
   const Points sparse = random_points<Dim>(300, -3, 5), far = random_points<Dim>(40, -80, 80);
   points.insert(points.end(), sparse.begin(), sparse.end());
   points.insert(points.end(), far.begin(), far.end());
-  const Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(-100, 100));
+  Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(-100, 100));
   expect_good(c);
   EXPECT_LT(c.neighbours.grid().columns(), 65536 + 8 * points.size() + 1) << "the table stays small";
 }
@@ -155,7 +171,7 @@ TYPED_TEST(NeighboursOf, OneAndNone) {
   const Cloud<Dim, Real> one(Points{{0.2, 0.3, 0.4}}, 0.1, domain_between<Dim>(-1, 1));
   EXPECT_EQ(one.particles.count(), 1u);
   EXPECT_EQ(one.particles.slots(), std::size_t{cluster_size});
-  expect_complete(one, 0.28);
+  expect_complete(one, one.settings.support_radius);
   const Cloud<Dim, Real> none(Points{}, 0.1, domain_between<Dim>(-1, 1));
   EXPECT_EQ(none.particles.count(), 0u);
   EXPECT_TRUE(none.neighbours.chunks().empty());
@@ -169,7 +185,8 @@ TYPED_TEST(NeighboursOf, FarFromTheOrigin) {
     Points points = cube<Dim>(Dim == 2 ? 16 : 8, 0.001, 0.3);
     for (auto& p : points)
       for (int d = 0; d < Dim; ++d) p[d] += origin;
-    expect_good(Cloud<Dim, Real>(points, 0.001, domain_between<Dim>(origin - 1, origin + 1)));
+    Cloud<Dim, Real> c(points, 0.001, domain_between<Dim>(origin - 1, origin + 1));
+    expect_good(c);
   }
 }
 
@@ -189,8 +206,8 @@ TYPED_TEST(NeighboursOf, TenKilometresAlongTheColumns) {
   MOLTEN_FLAVOUR;
   for (const double spacing : {0.01, 0.001}) {
     SCOPED_TRACE(spacing);
-    const Cloud<Dim, Real> c(two_heaps<Dim>(spacing, 1e4, Dim - 1), spacing, domain_between<Dim>(-1, 2e4));
-    expect_complete(c, c.settings.support_radius + c.settings.skin);
+    Cloud<Dim, Real> c(two_heaps<Dim>(spacing, 1e4, Dim - 1), spacing, domain_between<Dim>(-1, 2e4));
+    expect_complete_shells(c);
   }
 }
 
@@ -198,8 +215,8 @@ TYPED_TEST(NeighboursOf, TenKilometresAcrossTheColumns) {
   // So wide a spread of so few particles widens the columns, and positions in wide columns lose digits in single
   // precision: here up to 1e-3 spacings. The list stays complete.
   MOLTEN_FLAVOUR;
-  const Cloud<Dim, Real> c(two_heaps<Dim>(0.01, 1e4, 0), 0.01, domain_between<Dim>(-1, 2e4));
-  expect_complete(c, c.settings.support_radius + c.settings.skin, std::is_same_v<Real, float> ? 1e-3 : 1e-6);
+  Cloud<Dim, Real> c(two_heaps<Dim>(0.01, 1e4, 0), 0.01, domain_between<Dim>(-1, 2e4));
+  expect_complete_shells(c, std::is_same_v<Real, float> ? 1e-3 : 1e-6);
 }
 
 TYPED_TEST(NeighboursOf, CompleteUntilHalfASkin) {
@@ -216,7 +233,7 @@ TYPED_TEST(NeighboursOf, CompleteUntilHalfASkin) {
     const double scale = 0.4999 * c.settings.skin / std::hypot(move[0], move[1], move[2]);
     for (int d = 0; d < Dim; ++d) x[d][s] += scale * move[d];
   }
-  for (std::size_t s = 0; s < c.particles.slots(); ++s) c.neighbours.localise(c.particles, s);
+  for (std::size_t k = 0; k < c.neighbours.clusters(); ++k) c.neighbours.localise(c.particles, k);
   EXPECT_FALSE(c.neighbours.is_due());
   c.neighbours.moved(0.4999 * c.settings.skin);
   EXPECT_FALSE(c.neighbours.is_due());
@@ -234,11 +251,7 @@ TYPED_TEST(NeighboursOf, RelistIsTheSameList) {
   const std::vector<ClusterChunk> before(c.neighbours.chunks().begin(), c.neighbours.chunks().end());
   c.neighbours.relist(c.particles);
   ASSERT_EQ(before.size(), c.neighbours.chunks().size());
-  for (std::size_t k = 0; k < before.size(); ++k) {
-    const ClusterChunk& now = c.neighbours.chunks()[k];
-    EXPECT_EQ(before[k].entry_begin, now.entry_begin);
-    EXPECT_EQ(before[k].entries, now.entries);
-  }
+  for (std::size_t k = 0; k < before.size(); ++k) EXPECT_EQ(before[k], c.neighbours.chunks()[k]);
 }
 
 TYPED_TEST(NeighboursOf, DropsWhatLeavesTheDomain) {
@@ -248,7 +261,7 @@ TYPED_TEST(NeighboursOf, DropsWhatLeavesTheDomain) {
   points.push_back({5, 0.4, 0.4});
   points.push_back({0.4, -1.001, 0.4});
   points.push_back({NAN, 0.4, 0.4});
-  const Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(-1, 1));
+  Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(-1, 1));
   EXPECT_EQ(c.particles.count(), kept);
   EXPECT_EQ(c.neighbours.dropped(), 3u);
   expect_good(c);
@@ -256,7 +269,7 @@ TYPED_TEST(NeighboursOf, DropsWhatLeavesTheDomain) {
 
 TYPED_TEST(NeighboursOf, PaddingIsFarFromEverything) {
   MOLTEN_FLAVOUR;
-  const Cloud<Dim, Real> c(random_points<Dim>(401, 0, 2), 0.1, domain_between<Dim>(-10, 10));
+  Cloud<Dim, Real> c(random_points<Dim>(401, 0, 2), 0.1, domain_between<Dim>(-10, 10));
   int padding = 0;
   for (std::size_t s = 0; s < c.particles.slots(); ++s) {
     if (!c.particles.is_padding(s)) continue;
@@ -271,7 +284,7 @@ TYPED_TEST(NeighboursOf, WrapsPeriodicPositions) {
   MOLTEN_FLAVOUR;
   Points points = cube<Dim>(8, 0.1);
   for (std::size_t k = 0; k < points.size(); ++k) points[k][0] += 0.8 * (static_cast<int>(k % 5) - 2);
-  const Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(0, 0.8, {true, true, true}));
+  Cloud<Dim, Real> c(points, 0.1, domain_between<Dim>(0, 0.8, {true, true, true}));
   for_each_particle(c.particles, [](std::size_t, const auto& x) {
     EXPECT_GE(x[0], 0);
     EXPECT_LT(x[0], 0.8);

@@ -5,6 +5,7 @@
 
 #include "core/fields.h"
 #include "core/scene.h"
+#include "core/simd.h"
 
 namespace molten {
 
@@ -20,6 +21,18 @@ struct PressureForce {
   }
 };
 
+/// (1 + x)^γ − 1 without cancellation. For whole γ by ((1 + x)^{n+1} − 1) = ((1 + x)^n − 1)(1 + x) + x, whose terms
+/// have one sign: the logarithm takes ten times as long. T: double or lanes of it.
+template <class T> T power_less_one(const T& x, double gamma) {
+  constexpr double largest_whole = 16;
+  if (gamma >= 1 && gamma <= largest_whole && gamma == std::floor(gamma)) {
+    T power = x;
+    for (int n = 1; n < static_cast<int>(gamma); ++n) power = power + (power * x + x);
+    return power;
+  }
+  return each_lane(x, [gamma](double x) { return std::expm1(gamma * std::log1p(x)); });
+}
+
 /// p(ρ) of a weakly compressible liquid; δ = ρ/ρ0 − 1 is what the particles carry.
 struct EquationOfState {
   StateEquation kind = StateEquation::tait;
@@ -29,14 +42,14 @@ struct EquationOfState {
 
   /// Pa. Linear: p = c²(ρ − ρ0) (Morris; [P]); ideal gas: p = k(ρ − ρ0) ([Q] 4.7), the same with c = √k; Tait: p =
   /// c²ρ0/γ ((ρ/ρ0)^γ − 1) ([D] 4.2).
-  double pressure(double compression) const {
+  template <class T> T pressure(const T& compression) const {
     const double stiffness = sound_speed * sound_speed * rest_density;
-    if (kind != StateEquation::tait) return stiffness * compression;
-    return stiffness / gamma * std::expm1(gamma * std::log1p(compression));
+    if (kind != StateEquation::tait) return T(stiffness) * compression;
+    return T(stiffness / gamma) * power_less_one(compression, gamma);
   }
   /// p/ρ², Pa m⁶/kg²
-  double term(double compression) const {
-    const double density = rest_density * (1 + compression);
+  template <class T> T term(const T& compression) const {
+    const T density = T(rest_density) * (T(1) + compression);
     return pressure(compression) / (density * density);
   }
   /// The compression at which p is this (Pa).

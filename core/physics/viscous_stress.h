@@ -10,19 +10,29 @@
 
 namespace molten {
 
-/// Sums ρ0 D; the caller divides by ρ0. Corrected: with L_i ∇W and volumes at rest (gradient_correction.h).
+/// Sums ρ0 D; the caller divides by ρ0.
 struct StrainRateTerm {
-  using Reads = FieldList<Velocity, Compression, Correction>;
+  using Reads = FieldList<Velocity, Compression>;
   using Sums = FieldList<StrainRate>;
   static constexpr bool on = true;
-  bool corrected = false;
 
   template <class Pair, class I, class J, class Out>
   [[gnu::always_inline]] void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
     using L = std::decay_t<decltype(i[compression])>;
-    if (corrected) return out.gradW(strain_rate, twice_symmetric(j[velocity] - i[velocity], i[correction] * ij.x));
     const L volume = reciprocal(L(1) + j[compression]);  // V_j ρ0/m
     out.gradW(strain_rate, twice_symmetric(volume * (j[velocity] - i[velocity]), ij.x));
+  }
+};
+
+/// The same with L_i ∇W and volumes at rest (gradient_correction.h).
+struct CorrectedStrainRateTerm {
+  using Reads = FieldList<Velocity, Correction>;
+  using Sums = FieldList<StrainRate>;
+  static constexpr bool on = true;
+
+  template <class Pair, class I, class J, class Out>
+  [[gnu::always_inline]] void operator()(const Pair& ij, const I& i, const J& j, Out& out) const {
+    out.gradW(strain_rate, twice_symmetric(j[velocity] - i[velocity], i[correction] * ij.x));
   }
 };
 
