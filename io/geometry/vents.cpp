@@ -25,7 +25,8 @@ std::string name_of(const Scene& scene, const Vent& vent) {
 
 /// The lattice points of the plane that fall on the patch, seen along its normal.
 std::vector<Point<3>> offsets_on(const TriangleMesh& mesh, const VentPatch<3>& patch, double spacing) {
-  const auto [a, b] = axes_across(patch.normal);
+  const auto axes = axes_across(patch.normal);
+  const Point<3>&a = axes[0], &b = axes[1];  // clang 14 lets no lambda capture a structured binding
   const auto flat = [&](const Vec3& v) { return Vec2((v - patch.centre).dot(a), (v - patch.centre).dot(b)); };
   const auto turn = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
   double reach = 0;
