@@ -17,7 +17,7 @@ namespace molten::bench {
 
 template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Start& start) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
-  return make_state<Dim, Real>(features_of(scene), p, build_contact(scene, p), start);
+  return make_state<Dim, Real>(features_of(scene), p, build_surroundings(scene, start, p), start);
 }
 
 Scene tank(int dimensions, double smoothing_ratio) {

@@ -1,5 +1,6 @@
 // Contact with walls: the particles of a moving dam break that are near the tank, and all of them asked whether they
-// are; and a shower of particles on the terrain of scenes/volcano.toml, where its model was fetched.
+// are; a shower of particles on the terrain of scenes/volcano.toml, where its model was fetched; and flights low over
+// hills, whose lengths (in hundredths of a grid cell) show where the tree overtakes the grid.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -104,6 +105,38 @@ template <int Dim> void time_moves(benchmark::State& bench, const Shower<Dim>& s
       static_cast<double>(count - std::count(bounces.begin(), bounces.end(), 0)) / static_cast<double>(count);
 }
 
+/// Hills of n × n cells, two triangles each, over a square whose side is `side` m.
+Wall<3> hills(int n, double side) {
+  Wall<3> wall;
+  const double step = side / n;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i)
+      wall.vertices.push_back({i * step, j * step, 0.02 * side * (std::sin(9.0 * i / n) + std::cos(7.0 * j / n))});
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+      wall.facets.push_back({a, b, d});
+      wall.facets.push_back({a, d, c});
+    }
+  return wall;
+}
+
+/// Particles that fly low over 524288 triangles, somewhat smaller than a cell, so many cells far a step; some hit.
+Shower<3> flights(SearchMethod method, double cells) {
+  constexpr int n = 512;
+  constexpr double radius = 0.05, cell = 5.2 * radius, side = 0.4 * n * cell;
+  Shower<3> shower{Contact<3>({hills(n, side)}, radius, cell, method), {}, radius, 1.0, 2 * radius};
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> of(0, 1);
+  while (shower.motions.size() < 4096) {
+    const double angle = 2 * M_PI * of(random), dip = 0.2 * (of(random) - 0.7);
+    const Point<3> way = cells * cell * Point<3>(std::cos(angle), std::sin(angle), dip).normalized();
+    const Point<3> x(side * of(random), side * of(random), side * (0.05 * of(random)));
+    shower.motions.push_back({x, way, way});
+  }
+  return shower;
+}
+
 template <int Dim, class Make> void add_moves(const std::string& name, bool only_ask, Make make) {
   auto kept = std::make_shared<std::unique_ptr<Shower<Dim>>>();
   add(name, [=](benchmark::State& bench) {
@@ -121,6 +154,11 @@ int main(int argc, char** argv) {
     add_moves<3>("contact/move/tank/3d/100k", false, [] { return dam_break<3>(100000, true); });
     add_moves<3>("contact/may_touch/tank/3d/100k", true, [] { return dam_break<3>(100000, false); });
     add_moves<2>("contact/move/tank/2d/100k", false, [] { return dam_break<2>(100000, true); });
+    for (const int hundredths : {2, 25, 50, 100, 400, 6400})
+      for (const auto& [name, method] : {std::pair("grid", SearchMethod::grid), std::pair("tree", SearchMethod::tree),
+                                         std::pair("rule", SearchMethod::by_rule)})
+        add_moves<3>(fmt::format("contact/hills/{}/{}", name, hundredths), false,
+                     [=, how = method] { return flights(how, hundredths / 100.0); });
     const std::filesystem::path scenes = std::filesystem::path(MOLTEN_SOURCE_DIR) / "scenes";
     if (std::filesystem::exists(scenes / "models/volcano.json"))
       add_moves<3>("contact/move/terrain/3d", false, [=] { return terrain(scenes / "volcano.toml"); });

@@ -12,6 +12,21 @@
 
 namespace molten {
 
+template <int Dim> std::vector<SnapshotBody> snapshots_of(const Bodies<Dim>& bodies) {
+  std::vector<SnapshotBody> shots(bodies.count());
+  for (std::size_t k = 0; k < shots.size(); ++k) {
+    const Pose<Dim>& pose = bodies.motion(k).start;
+    for (int a = 0; a < Dim; ++a) {
+      shots[k].centre[a] = pose.centre[a];
+      for (int b = 0; b < Dim; ++b) shots[k].turn[3 * a + b] = pose.turn(a, b);
+    }
+  }
+  return shots;
+}
+
+template std::vector<SnapshotBody> snapshots_of(const Bodies<2>&);
+template std::vector<SnapshotBody> snapshots_of(const Bodies<3>&);
+
 template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
   const Particles<Dim, Real>& p = s.particles;
   const auto x = p[position];
@@ -68,6 +83,7 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
   total.energy_taken_by_sleep = s.sleep.taken_energy;
   for (int k = 0; k < 3; ++k)
     if (k >= Dim || total.particles == 0) total.lower[k] = total.upper[k] = 0;
+  for (const SnapshotBody& body : snapshots_of(s.bodies)) total.bodies.push_back(body.centre);
   return total;
 }
 
@@ -141,6 +157,7 @@ Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>
   }
   for (const std::string& name : fields.empty() ? available_fields(s.features) : fields)
     shot.fields.push_back(read_field(s, name, std::span<const std::uint32_t>(slots)));
+  shot.bodies = snapshots_of(s.bodies);
   return shot;
 }
 

@@ -22,6 +22,7 @@ struct Diagnostics {
   std::array<double, 3> lower{}, upper{};                                          // m; extent of the particles
   double max_speed = 0;                                                            // m/s
   double max_compression = 0;                                                      // largest |ρ/ρ0 − 1|
+  std::vector<std::array<double, 3>> bodies;                                       // m; centres of those that move
 };
 
 /// The same bits for any thread count.
@@ -30,6 +31,9 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s);
 /// All particles in id order with the named fields (empty: all that the run has).
 template <int Dim, class Real>
 Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>& fields);
+
+/// Where the bodies are.
+template <int Dim> std::vector<SnapshotBody> snapshots_of(const Bodies<Dim>& bodies);
 
 /// Names of what a snapshot of this run can hold.
 std::vector<std::string> available_fields(const Features& features);

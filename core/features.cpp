@@ -83,6 +83,17 @@ void require_sensible_walls(const Scene& scene) {
              "numerics.wall_support out");
 }
 
+void require_sensible_integrator(const Scene& scene) {
+  const IntegratorKind kind = scene.numerics.integrator;
+  if (kind == IntegratorKind::leap_frog || kind == IntegratorKind::symplectic_euler) return;
+  const bool moves = std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
+                                 [](const Boundary& b) { return b.motion || b.body; });
+  if (moves || !scene.vents.empty() || !scene.outflows.empty())
+    refuse(
+        scene, "numerics.integrator",
+        std::string(name_of(kind)) + " knows no walls that move, vents or outflow; use leap_frog or symplectic_euler");
+}
+
 /// What no rates pass has together.
 void require_one_pass(const Scene& scene, const Features& f) {
   if (!f.any_seldom()) return;
@@ -120,6 +131,7 @@ Features features_of(const Scene& scene) {
   require_sensible_numerics(scene);
   require_sensible_sleep(scene);
   require_sensible_walls(scene);
+  require_sensible_integrator(scene);
   Features f;
   f.heat = scene.fluid.heat.has_value();
   f.stress = !scene.fluid.rheology.constant();
@@ -140,6 +152,10 @@ Features features_of(const Scene& scene) {
   f.wall_support = f.contact && scene.numerics.wall_support;
   f.density_diffusion = scene.numerics.density_diffusion > 0;
   f.sleep = scene.numerics.sleep.has_value();
+  f.bodies = std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
+                         [](const Boundary& b) { return b.motion || b.body; });
+  f.vents = !scene.vents.empty();
+  f.outflow = !scene.outflows.empty();
   f.integrator = scene.numerics.integrator;
   require_one_pass(scene, f);
   return f;
@@ -170,6 +186,7 @@ FieldSet Features::columns() const {
   if (sleep) s |= field_set(FieldList<RestTime>{});
   if (sleep && heat) s |= field_set(FieldList<HeatRestTime>{});
   if (sleep && heat && stress) s |= field_set(FieldList<RestTemperature>{});
+  if (vents) s |= field_set(FieldList<Inlet>{});
   return s;
 }
 
@@ -203,6 +220,9 @@ std::vector<std::string> Features::names() const {
   if (shifting) n.push_back("shifting");
   if (contact) n.push_back("contact");
   if (wall_support) n.push_back("wall-support");
+  if (bodies) n.push_back("moving-bodies");
+  if (vents) n.push_back("vents");
+  if (outflow) n.push_back("outflow");
   if (density_diffusion) n.push_back("density-diffusion");
   if (sleep) n.push_back("sleep");
   n.push_back(name_of(integrator));

@@ -28,6 +28,9 @@ struct Features {
   bool shifting = false;
   bool contact = false;       // walls
   bool wall_support = false;  // walls make up for what they cut off a particle's support
+  bool bodies = false;        // walls that move
+  bool vents = false;         // fluid enters
+  bool outflow = false;       // fluid is removed at planes
   bool density_diffusion = false;
   bool sleep = false;  // what is at rest
   IntegratorKind integrator = IntegratorKind::leap_frog;

@@ -46,6 +46,8 @@ MOLTEN_FIELD(Velocity, VectorField, velocity, "m/s", "velocity at the time of th
 MOLTEN_FIELD(Compression, ScalarField, compression, "1", "density / rest density - 1");
 MOLTEN_FIELD(Temperature, ExactScalar, temperature, "degrees", "temperature");
 
+MOLTEN_FIELD(Inlet, IdScalar, inlet, "1", "number of the vent that still pushes the particle; -1: none");
+
 // What an integrator carries beside it.
 MOLTEN_FIELD(HalfVelocity, VectorField, half_velocity, "m/s", "leap-frog velocity, half a step behind");
 MOLTEN_FIELD(HalfCompression, ScalarField, half_compression, "1", "leap-frog compression, half a step behind");
@@ -104,7 +106,7 @@ using AllFields =
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
-              RestTime, HeatRestTime, RestTemperature>;
+              RestTime, HeatRestTime, RestTemperature, Inlet>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

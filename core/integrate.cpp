@@ -8,6 +8,8 @@
 // for 0.6 ≤ β ≤ 1.
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "core/energy_bound.h"
 #include "core/mover.h"
@@ -34,12 +36,14 @@ template <int Dim, class Real> class Integrator {
         drift_(s),
         mover_(s) {}
 
-  /// Moves the particles of a cluster; returns the square of the longest displacement (m²).
-  double advance(std::size_t cluster) const {
+  /// Moves the particles of a cluster; returns the square of the longest displacement (m²). `kicks`: what bodies give
+  /// to them is added.
+  double advance(std::size_t cluster, std::span<Kick<Dim>> kicks) const {
     const std::size_t slot = cluster * cluster_size;
     ClusterMotion<Dim> motion = kicked(slot);
     const Vec<Dim, Wide> before = motion.position;
-    const Wide bounced = mover_.move_cluster(cluster, motion);
+    Wide bounced = mover_.move_cluster(cluster, motion, kicks);
+    if (inlet_) push(slot, before, motion, bounced);
     keep(slot, motion, bounced);
     advance_compression(slot);
     if (s_.features.internal_energy) add(internal_energy_ + slot, kick_, internal_energy_rate_ + slot);
@@ -59,7 +63,7 @@ template <int Dim, class Real> class Integrator {
   /// How long motion, and heat, have been within the bounds of rest.
   void count_rest(std::size_t first) const {
     for (std::size_t slot = first; slot < first + cluster_size; ++slot)
-      if (!p_.is_padding(slot)) count_rest_of(slot);
+      if (!p_.is_padding(slot) && !(inlet_ && inlet_[slot] >= 0)) count_rest_of(slot);
   }
   void count_rest_of(std::size_t slot) const {
     const RestBounds& bounds = *s_.parameters.rest;
@@ -82,6 +86,25 @@ template <int Dim, class Real> class Integrator {
       m.velocity[d] = drift_.overwritten(m.velocity[d], d, slot);
     }
     return m;
+  }
+
+  /// A vent moves what is in it like a piston; walls do not concern it, and its temperature stays what it entered with.
+  void push(std::size_t first, const Vec<Dim, Wide>& before, ClusterMotion<Dim>& m, Wide& bounced) const {
+    for (int n = 0; n < cluster_size; ++n) {
+      const std::size_t slot = first + n;
+      if (inlet_[slot] < 0) continue;
+      const auto vent = static_cast<std::size_t>(inlet_[slot]);
+      const Point<Dim> way = s_.vents.way(vent, s_.clock.time, dt_);
+      Point<Dim> after;
+      for (int d = 0; d < Dim; ++d) {
+        after[d] = lane(before[d], n) + way[d];
+        set_lane(m.position[d], n, after[d]);
+        set_lane(m.velocity[d], n, way[d] / dt_);
+      }
+      set_lane(bounced, n, 1.0);
+      if (temperature_rate_) temperature_rate_[slot] = 0;
+      if (s_.vents.has_left(vent, after)) inlet_[slot] = -1;
+    }
   }
 
   void keep(std::size_t slot, const ClusterMotion<Dim>& m, const Wide& bounced) const {
@@ -128,12 +151,27 @@ template <int Dim, class Real> class Integrator {
   Real* older_rate_ = p_[older_compression_rate][0];
   const Real* compression_rate_ = p_[compression_rate][0];
   double* temperature_ = p_[temperature][0];
-  const Real* temperature_rate_ = p_[temperature_rate][0];
+  Real* temperature_rate_ = p_[temperature_rate][0];
   double* internal_energy_ = p_[internal_energy][0];
   const Real* internal_energy_rate_ = p_[internal_energy_rate][0];
   Real* rest_time_ = p_[rest_time][0];
   Real* heat_rest_time_ = p_[heat_rest_time][0];
   Real* rest_temperature_ = p_[rest_temperature][0];
+  std::int64_t* inlet_ = p_[inlet][0];  // null without vents
+};
+
+/// What a step has done: the square of the largest displacement (m²), and what bodies have given to particles.
+template <int Dim> struct Moved {
+  double way2 = 0;
+  std::vector<Kick<Dim>> kicks;  // by body
+
+  void join(const Moved& m) {
+    way2 = std::max(way2, m.way2);
+    for (std::size_t k = 0; k < kicks.size(); ++k) {
+      kicks[k].linear += m.kicks[k].linear;
+      kicks[k].angular += m.kicks[k].angular;
+    }
+  }
 };
 
 /// What the pair passes read of a cluster's particles, from their state.
@@ -165,19 +203,23 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   const IntegratorKind kind = s.features.integrator;
   if (kind == IntegratorKind::energy_bounded_euler) return integrate_energy_bounded(s);
   if (kind != IntegratorKind::leap_frog && kind != IntegratorKind::symplectic_euler) return finish_stages(s);
+  if (s.features.bodies) s.bodies.begin_step(s.contact, s.clock.time, s.clock.dt, s.parameters.gravity);
   const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
   const Preparation<Dim, Real> preparation(s);
   const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
-  const double way2 = reduce_slots(
-      s.neighbours.clusters() - first, 0.0,
-      [&](std::size_t k, double& largest) {
-        largest = std::max(largest, integrator.advance(first + k));
+  const Moved<Dim> moved = reduce_slots(
+      s.neighbours.clusters() - first, Moved<Dim>{0, std::vector<Kick<Dim>>(s.bodies.count())},
+      [&](std::size_t k, Moved<Dim>& all) {
+        all.way2 = std::max(all.way2, integrator.advance(first + k, all.kicks));
         preparation.of(first + k);
       },
-      [](double& a, double b) { a = std::max(a, b); });
-  s.neighbours.moved(std::sqrt(way2));
+      [](Moved<Dim>& a, const Moved<Dim>& b) { a.join(b); });
+  s.neighbours.moved(std::sqrt(moved.way2));
   s.sleep.warm_time += s.clock.dt;
-  s.sleep.travel += (s.parameters.eos.sound_speed + std::sqrt(s.extremes.speed2)) * s.clock.dt;
+  s.sleep.travel +=
+      (s.parameters.eos.sound_speed + std::max(std::sqrt(s.extremes.speed2), s.bodies.fastest())) * s.clock.dt;
+  if (s.features.vents) s.vents.advance(s.clock.time, s.clock.dt);
+  if (s.features.bodies) s.bodies.end_step(moved.kicks, s.parameters.particle_mass);
 }
 
 template <int Dim, class Real> void prepare(State<Dim, Real>& s, std::size_t first_slot) {

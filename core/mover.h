@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 
 #include "core/simd.h"
 #include "core/state.h"
@@ -66,12 +67,13 @@ template <int Dim, class Real> class Mover {
     return false;
   }
 
-  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding stays.
-  ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m) const {
+  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent moves, does not count.
+  /// `kicks`: what bodies give to particles is added.
+  ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
     ClusterLanes bounced(0.0);
     if (may_collide(cluster)) {
       for (int n = 0; n < cluster_size; ++n)
-        if (!s_.particles.is_padding(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(m, n)));
+        if (may_bounce(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(m, n, kicks)));
     } else {
       m.position += ClusterLanes(s_.clock.dt) * m.rate;
     }
@@ -80,15 +82,16 @@ template <int Dim, class Real> class Mover {
 
  private:
   bool may_collide(std::size_t cluster) const { return always_collide_ || s_.near_wall[cluster]; }
+  bool may_bounce(std::size_t slot) const { return !s_.particles.is_padding(slot) && !(inlet_ && inlet_[slot] >= 0); }
 
-  bool collide(ClusterMotion<Dim>& of, int n) const {
+  bool collide(ClusterMotion<Dim>& of, int n, std::span<Kick<Dim>> kicks) const {
     Motion<Dim> m;
     for (int d = 0; d < Dim; ++d) {
       m.position[d] = lane(of.position[d], n);
       m.velocity[d] = lane(of.velocity[d], n);
       m.rate[d] = lane(of.rate[d], n);
     }
-    const bool bounced = s_.contact.move(m, s_.clock.dt) > 0;
+    const bool bounced = s_.contact.move(m, s_.clock.dt, kicks) > 0;
     for (int d = 0; d < Dim; ++d) {
       set_lane(of.position[d], n, m.position[d]);
       set_lane(of.velocity[d], n, m.velocity[d]);
@@ -96,16 +99,17 @@ template <int Dim, class Real> class Mover {
     return bounced;
   }
 
-  /// No particle gets further from where it was sorted than this (m).
+  /// No particle gets further from where it was sorted than this (m), and no body nearer to it.
   double longest_way() const {
     const double flow = std::sqrt(s_.extremes.speed2), dt = s_.clock.dt;
     const double fastest = (s_.features.shifting ? 1.5 : 1) * flow + dt * std::sqrt(s_.extremes.acceleration2) +
                            std::abs(s_.parameters.xsph) * std::sqrt(s_.extremes.xsph2);
-    return s_.neighbours.displacement() + 2 * fastest * dt;
+    return s_.neighbours.displacement() + 2 * fastest * dt + s_.bodies.way();
   }
 
   const State<Dim, Real>& s_;
   bool always_collide_;
+  const std::int64_t* inlet_ = s_.particles[inlet][0];  // null without vents
 };
 
 }  // namespace molten

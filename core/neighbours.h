@@ -36,6 +36,8 @@ template <int Dim, class Real> class Neighbours {
   /// Adds the largest displacement of one step (m). The sum bounds each particle's way since the build.
   void moved(double displacement) { displacement_ += displacement; }
   double displacement() const { return displacement_; }
+  /// Particles have come or gone: the list is of no use any more.
+  void expire() { displacement_ += settings_.skin + settings_.spacing; }
 
   const Grid<Dim>& grid() const { return order_.grid; }
   const NeighbourSettings& settings() const { return settings_; }

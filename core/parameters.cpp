@@ -11,19 +11,39 @@ struct Extent {
   std::array<double, 3> lower{1e300, 1e300, 1e300}, upper{-1e300, -1e300, -1e300};
 };
 
+/// Of the fluid at the start and of where it will enter.
 Extent extent_of(const Start& start) {
   Extent e;
-  for (const auto& x : start.position)
+  const auto extend = [&](const std::array<double, 3>& x) {
     for (int d = 0; d < 3; ++d) e.lower[d] = std::min(e.lower[d], x[d]), e.upper[d] = std::max(e.upper[d], x[d]);
+  };
+  for (const auto& x : start.position) extend(x);
+  for (const auto& x : start.vents) extend(x);
   return e;
 }
 
-/// Ten times the speed that the fluid reaches by falling its own height, or starts with.
+/// Of a moving wall's centre (m²/s²): at the start, or the highest between key frames.
+double square_of_speed(const Boundary& b) {
+  const auto square = [](const std::array<double, 3>& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
+  if (b.body) return square(b.body->velocity);
+  if (!b.motion) return 0;
+  double fastest2 = square(b.motion->velocity);
+  for (std::size_t k = 1; k < b.motion->key_frames.size(); ++k) {
+    const auto &from = b.motion->key_frames[k - 1], &to = b.motion->key_frames[k];
+    const double dt = to[0] - from[0];
+    fastest2 = std::max(fastest2, square({(to[1] - from[1]) / dt, (to[2] - from[2]) / dt, (to[3] - from[3]) / dt}));
+  }
+  return fastest2;
+}
+
+/// Ten times the speed that the fluid reaches by falling its own height, or that fluid, walls or vents start with.
 double default_sound_speed(const Scene& scene, const Start& start, const Extent& extent) {
   double fall = 0, fastest2 = 0;  // g · height, m²/s²
   for (int d = 0; d < scene.dimensions; ++d)
     fall += std::abs(scene.gravity[d]) * (extent.upper[d] - extent.lower[d] + start.spacing);
   for (const auto& v : start.velocity) fastest2 = std::max(fastest2, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  fastest2 = std::max(fastest2, start.vent_speed * start.vent_speed);
+  for (const Boundary& b : scene.boundaries) fastest2 = std::max(fastest2, square_of_speed(b));
   return 10 * std::sqrt(2 * fall + fastest2 + 1e-12);
 }
 
@@ -54,7 +74,7 @@ template <int Dim> Domain<Dim> domain_of(const Scene& scene, const Extent& exten
   return domain;
 }
 
-/// The temperatures that a scene starts with and keeps at its walls.
+/// The temperatures that a scene starts with, keeps at its walls and lets in.
 struct Temperatures {
   double low = 1e300, high = -1e300;
 
@@ -62,9 +82,13 @@ struct Temperatures {
     for (const double T : start.temperature) add(T);
     for (const Boundary& boundary : scene.boundaries)
       if (boundary.temperature) add(*boundary.temperature);
+    if (scene.fluid.heat)
+      for (const Vent& vent : scene.vents)
+        for (const Vent::Entry& entry : vent.table) add(entry.temperature);
   }
   void add(double T) { low = std::min(low, T), high = std::max(high, T); }
   double range() const { return std::max(high - low, 0.0); }
+  double middle() const { return (low + high) / 2; }
   double largest() const { return high < low ? 0 : std::max(std::abs(low), std::abs(high)); }
 };
 
@@ -101,6 +125,11 @@ RestBounds rest_bounds(const Scene& scene, const Parameters<Dim>& p, const Tempe
 
 }  // namespace
 
+double measure_of_particle(const Scene& scene, const Start& start) {
+  if (start.position.empty()) return std::pow(start.spacing, scene.dimensions);
+  return start.measure / static_cast<double>(start.position.size());
+}
+
 template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start& start) {
   const Extent extent = extent_of(start);
   const Numerics& n = scene.numerics;
@@ -111,7 +140,8 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.skin = n.skin * start.spacing;
   // Walls with support hold particles by their pressure, further off than this; contact is for what goes too fast.
   p.contact_radius = n.wall_support ? start.spacing / 4 : start.spacing / 2;
-  p.particle_mass = scene.fluid.density * start.measure / static_cast<double>(start.position.size());
+  p.particle_mass = scene.fluid.density * measure_of_particle(scene, start);
+  p.outflows = scene.outflows;
   for (int d = 0; d < Dim; ++d) p.gravity[d] = scene.gravity[d];
   p.kernel = n.kernel;
   p.eos = {n.state_equation, scene.fluid.density, n.sound_speed.value_or(default_sound_speed(scene, start, extent)),
@@ -129,8 +159,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
       p.smd.melting_low = (*scene.fluid.heat->melting_range)[0];
       p.smd.melting_high = (*scene.fluid.heat->melting_range)[1];
     }
-    const auto [low, high] = std::minmax_element(start.temperature.begin(), start.temperature.end());
-    p.reference_temperature = (*low + *high) / 2;
+    p.reference_temperature = Temperatures(scene, start).middle();
   }
   p.artificial_viscosity = n.artificial_viscosity;
   p.density_diffusion = n.density_diffusion;

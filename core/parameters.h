@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "core/features.h"
 #include "core/kernel.h"
@@ -45,6 +46,7 @@ template <int Dim> struct Parameters {
   bool sort_each_step = false;
   std::optional<RestBounds> rest;  // within which particles fall asleep
   Domain<Dim> domain;
+  std::vector<Plane> outflows;
 };
 
 /// The largest time step of conduction (s).
@@ -59,7 +61,12 @@ struct Start {
   double measure = 0;                                     // m³ (2-D: m²) of all bodies
   std::vector<std::array<double, 3>> position, velocity;  // m, m/s
   std::vector<double> temperature;                        // empty without heat
+  std::vector<std::array<double, 3>> vents;               // m; where fluid will enter
+  double vent_speed = 0;                                  // m/s; the fastest that it will
 };
+
+/// The volume that a particle stands for, m³ (2-D: m²).
+double measure_of_particle(const Scene& scene, const Start& start);
 
 template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start& start);
 

@@ -30,6 +30,11 @@ void Buffer::resize(std::size_t bytes, std::size_t kept) {
   capacity_ = rounded;
 }
 
+void Buffer::extend(std::size_t from, std::size_t to) {
+  if (to > capacity_) resize(std::max(to, capacity_ + capacity_ / 2), from);
+  std::memset(static_cast<char*>(data()) + from, 0, to - from);
+}
+
 template <int Dim, class Real> Particles<Dim, Real>::Particles(FieldSet active) : active_(active) {
   active_ |= field_set(FieldList<Id, LocalPosition>{});
 }
@@ -43,6 +48,20 @@ void Particles<Dim, Real>::resize(std::size_t slots, std::size_t count, std::siz
     for (int k = 0; k < components<F, Dim>; ++k)
       columns_[first_component<F>() + k].resize(slots * sizeof(stored_t<F, Real>), kept * sizeof(stored_t<F, Real>));
   });
+}
+
+template <int Dim, class Real> std::size_t Particles<Dim, Real>::append(std::size_t count) {
+  const std::size_t first = slots_, slots = first + (count + cluster_size - 1) / cluster_size * cluster_size;
+  for_each_field([&]<class F>(F) {
+    if (!active_.test(field_index<F>)) return;
+    using T = stored_t<F, Real>;
+    for (int k = 0; k < components<F, Dim>; ++k)
+      columns_[first_component<F>() + k].extend(first * sizeof(T), slots * sizeof(T));
+  });
+  slots_ = slots;
+  count_ += count;
+  for (std::size_t s = first + count; s < slots; ++s) (*this)[id][0][s] = padding_id;
+  return first;
 }
 
 template <int Dim, class Real> std::size_t Particles<Dim, Real>::bytes() const {

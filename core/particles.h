@@ -31,6 +31,7 @@ class Buffer {
  public:
   /// When it has to grow, all but the first `kept` bytes are lost.
   void resize(std::size_t bytes, std::size_t kept = 0);
+  void extend(std::size_t from, std::size_t to);  // bytes; keeps the first `from`, the rest becomes zero
   void* data() const { return data_.get(); }
   std::size_t capacity() const { return capacity_; }
   void swap(Buffer& other) noexcept { std::swap(data_, other.data_), std::swap(capacity_, other.capacity_); }
@@ -66,6 +67,13 @@ template <int Dim, class Real> class Particles {
   /// Room for `slots` slots (a multiple of cluster_size); contents are lost but for the first `kept` slots. `count` of
   /// them are particles.
   void resize(std::size_t slots, std::size_t count, std::size_t kept = 0);
+
+  /// Adds so many particles at the end, all their fields zero, and padding up to a whole cluster; returns the slot of
+  /// the first. Columns grow by half, so that few calls allocate. The neighbours must be listed anew.
+  std::size_t append(std::size_t count);
+
+  /// So many particles have become padding.
+  void forget(std::size_t count) { count_ -= count; }
 
   std::size_t slots() const { return slots_; }
   std::size_t count() const { return count_; }

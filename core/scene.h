@@ -129,14 +129,51 @@ struct GroundLayer {
   double thickness = 0;    // m
 };
 
+/// A boundary that moves as it is told.
+struct Movement {
+  std::array<double, 3> velocity{};               // m/s
+  std::array<double, 3> spin{};                   // degrees/s, about the axes; 2-D: z
+  std::vector<std::array<double, 7>> key_frames;  // s, m (3), degrees (3): time, shift, turn; instead of the former
+  std::optional<std::array<double, 3>> centre;    // m; what it turns about; default: the middle of its bounding box
+};
+
+/// A boundary that gravity and the fluid drive: a rigid body.
+struct FreeBody {
+  double density = 0;                // kg/m³
+  std::array<double, 3> velocity{};  // m/s at the start
+  std::array<double, 3> spin{};      // degrees/s at the start; 2-D: z
+};
+
 struct Boundary {
   Shape shape;
-  double restitution = 0;             // what the normal velocity keeps, reversed
-  double slip = 0;                    // what the tangential velocity keeps: 0 no-slip, 1 free slip
-  std::array<double, 3> velocity{};   // m/s, along the wall, which itself stays where it is; with wall support
-  std::optional<double> temperature;  // of the surface, the scene's unit; none: insulating; with wall support
-  std::optional<GroundLayer> ground;  // between the surface and that temperature
-  bool inside = false;  // closed shapes: true = a container, the fluid is inside; false = an obstacle, outside
+  std::optional<Movement> motion;  // at most one of the two
+  std::optional<FreeBody> body;
+  double restitution = 0;  // what the normal velocity keeps, reversed
+  double slip = 0;         // what the tangential velocity keeps: 0 no-slip, 1 free slip
+  // Either makes the wall hold what touches it up to a stress and drag with that stress beyond, instead of slip:
+  std::optional<double> friction;      // Coulomb's coefficient; tangential over normal stress
+  std::optional<double> yield_stress;  // Pa; sticks up to it, whatever the normal stress
+  std::array<double, 3> velocity{};    // m/s, of the surface along the wall, which itself stays where it is
+  std::optional<double> temperature;   // of the surface, the scene's unit; none: insulating; with wall support
+  std::optional<GroundLayer> ground;   // between the surface and that temperature
+  bool inside = false;     // closed shapes: true = a container, the fluid is inside; false = an obstacle, outside
+  bool two_sided = false;  // meshes and terrain: holds from behind, too
+};
+
+// ---- sources and sinks --------------------------------------------------------------------------------------------
+
+/// Fluid enters at right angles through a flat patch; the wall behind it, if any, lets it pass.
+struct Vent {
+  std::array<double, 3> centre{}, normal{0, 0, 1};  // m, -; the way the fluid goes; 2-D: x, y
+  double radius = 0;                                // m; of a disc (2-D: half the width of a slit); 0 with a mesh
+  std::optional<MeshFile> mesh;                     // an open patch instead of the disc; centre and normal are its own
+  struct Entry {
+    double time = 0;  // s
+    double rate = 0;  // m³/s (2-D: m²/s)
+    double temperature = 0;
+  };
+  std::vector<Entry> table;  // at least one, by time; linear between, constant before and after
+  Place place;
 };
 
 // ---- numerics ---------------------------------------------------------------------------------------------------
@@ -236,6 +273,8 @@ struct Scene {
   std::optional<Box> domain;                   // particles that leave it are removed; default: generous bounding box
   Fluid fluid;
   std::vector<Boundary> boundaries;
+  std::vector<Vent> vents;
+  std::vector<Plane> outflows;  // what has passed one, to where its normal points, is removed
   Numerics numerics;
   Run run;
   Output output;

@@ -58,6 +58,15 @@ template <int Dim, class Real> class RestCells {
     return n;
   }
 
+  /// The middle of a cell (m), and no point of it is further from there.
+  Point<Dim> middle(std::size_t cell) const {
+    Point<Dim> x;
+    for (int d = 0; d < Dim; ++d, cell /= cells_[d - 1])
+      x[d] = grid_.lower[d] + (static_cast<double>(cell % cells_[d]) + 0.5) * width_[d];
+    return x;
+  }
+  double reach() const { return Eigen::Map<const Point<Dim>>(width_.data()).norm() / 2; }
+
   /// The cells of those slots in [begin, end) for which f(slot).
   template <class F> Marks of_slots(std::size_t begin, std::size_t end, const F& f) const {
     Marks marks(size(), 0);
@@ -182,19 +191,33 @@ struct Calls {
   Marks active, warm, wide_active, wide_warm;
 };
 
+/// Marks the cells at bodies that move. A free one would fall through what sleeps, so it counts as moving.
+template <int Dim, class Real>
+void mark_bodies(const State<Dim, Real>& s, const RestCells<Dim, Real>& cells, Marks& marks) {
+  for (std::size_t k = 0; k < s.bodies.count(); ++k) {
+    if (!s.bodies.body(k).inertia && s.bodies.speed(k) <= s.parameters.rest->speed) continue;
+    const Pose<Dim>& pose = s.bodies.motion(k).start;
+    for_each_slot(cells.size(), [&](std::size_t c) {
+      if (s.contact.may_touch_body(k, pose, cells.middle(c), cells.reach())) marks[c] = 1;
+    });
+  }
+}
+
 template <int Dim, class Real> Calls find_calls(const State<Dim, Real>& s, const RestCells<Dim, Real>& cells) {
   const Particles<Dim, Real>& p = s.particles;
   const auto after = static_cast<Real>(s.parameters.rest->after);
   const std::size_t first = s.neighbours.first_slot(Block::warm);
   const auto restless = [&](const Real* time) {
-    return cells.widened(
-        cells.of_slots(first, p.slots(), [&](std::size_t slot) { return !p.is_padding(slot) && time[slot] < after; }));
+    return cells.of_slots(first, p.slots(),
+                          [&](std::size_t slot) { return !p.is_padding(slot) && time[slot] < after; });
   };
   Calls calls;
   calls.active = restless(p[rest_time][0]);
+  mark_bodies(s, cells, calls.active);
+  calls.active = cells.widened(calls.active);
   calls.wide_active = cells.widened(calls.active);
   if (!s.features.heat) return calls;
-  calls.warm = restless(p[heat_rest_time][0]);
+  calls.warm = cells.widened(restless(p[heat_rest_time][0]));
   calls.wide_warm = cells.widened(calls.warm);
   return calls;
 }

@@ -7,11 +7,12 @@
 //
 // What may be missed: between a particle asleep and one not at rest lies at least the reach of a list, all of it awake.
 // So one asleep is denied only the forces of neighbours at rest, and what would set it moving first moves those around
-// it, which wakes it. Falling asleep takes at most ½ m v² of energy and m v of momentum from it, v being the bound on
-// speed; its mean acceleration over the time at rest was below 2 v over that time. Where the viscosity varies, a warm
-// particle wakes once its temperature has changed by a bound since it was last active. Heat is conserved between active
-// and warm particles but for what temperatures change meanwhile; one asleep is denied heat at about the bound on
-// the rate of temperature, since what would heat it faster first heats those around it.
+// it, which wakes it. A wall that moves wakes what it touches; a free body keeps it awake. Falling asleep takes at most
+// ½ m v² of energy and m v of momentum from it, v being the bound on speed; its mean acceleration over the time at rest
+// was below 2 v over that time. Where the viscosity varies, a warm particle wakes once its temperature has changed by a
+// bound since it was last active. Heat is conserved between active and warm particles but for what temperatures change
+// meanwhile; one asleep is denied heat at about the bound on the rate of temperature, since what would heat it faster
+// first heats those around it.
 #pragma once
 
 #include <cstdint>

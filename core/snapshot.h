@@ -2,6 +2,7 @@
 // pictures know only this, never the solver's storage.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,6 +15,12 @@ struct SnapshotField {
   std::vector<double> values;       // components × count, particle by particle
 };
 
+/// Where a body that moves is: x = centre + turn · (x in its own frame).
+struct SnapshotBody {
+  std::array<double, 3> centre{};                         // m
+  std::array<double, 9> turn{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
+};
+
 struct Snapshot {
   double time = 0;  // s
   std::int64_t step = 0;
@@ -22,6 +29,7 @@ struct Snapshot {
   std::vector<std::int64_t> id;  // ascending
   std::vector<double> position;  // m; 3 × count (2-D: z = 0)
   std::vector<SnapshotField> fields;
+  std::vector<SnapshotBody> bodies;
 
   std::size_t count() const { return id.size(); }
 };

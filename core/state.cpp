@@ -39,6 +39,8 @@ template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
     a.value("extremes/kinematic_viscosity", extremes.kinematic_viscosity);
     a.value("extremes/xsph2", extremes.xsph2);
   }
+  bodies.archive(a);
+  vents.archive(a);
   particles.archive(a);
   neighbours.archive(a);
   a.vector("neighbours/near_wall", near_wall);  // as of the last sort: where the particles are now tells otherwise
@@ -49,12 +51,14 @@ template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
 }
 
 template <int Dim, class Real>
-State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Contact<Dim> contact,
+State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Surroundings<Dim> around,
                             const Start& start) {
   State<Dim, Real> s{
       features,
       parameters,
-      std::move(contact),
+      std::move(around.contact),
+      std::move(around.bodies),
+      std::move(around.vents),
       Particles<Dim, Real>(features.columns()),
       Neighbours<Dim, Real>({parameters.spacing, parameters.support_radius, parameters.skin}, parameters.domain),
       {},
@@ -86,13 +90,14 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
       if (p.has(half_compression)) p[half_compression][0][k] = p[compression][0][k];
     }
   }
+  if (features.vents) open_vents(s);
   sort_and_list(s);
   return s;
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real) \
   template struct State<Dim, Real>;   \
-  template State<Dim, Real> make_state(const Features&, const Parameters<Dim>&, Contact<Dim>, const Start&);
+  template State<Dim, Real> make_state(const Features&, const Parameters<Dim>&, Surroundings<Dim>, const Start&);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)
 MOLTEN_INSTANTIATE(3, float)

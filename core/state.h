@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bodies.h"
 #include "core/boundary/contact.h"
 #include "core/boundary/wall_support.h"
 #include "core/features.h"
@@ -13,6 +14,7 @@
 #include "core/particles.h"
 #include "core/sleep.h"
 #include "core/timer.h"
+#include "core/vents.h"
 
 namespace molten {
 
@@ -38,10 +40,22 @@ struct Extremes {
   bool finite = true;
 };
 
+/// What surrounds the fluid.
+template <int Dim> struct Surroundings {
+  Surroundings(Contact<Dim> walls, Bodies<Dim> moving = {}, Vents<Dim> open = {})
+      : contact(std::move(walls)), bodies(std::move(moving)), vents(std::move(open)) {}
+
+  Contact<Dim> contact;
+  Bodies<Dim> bodies;
+  Vents<Dim> vents;
+};
+
 template <int Dim, class Real> struct State {
   Features features;  // fixed for the run
   Parameters<Dim> parameters;
   Contact<Dim> contact;
+  Bodies<Dim> bodies;
+  Vents<Dim> vents;
   Particles<Dim, Real> particles;
   Neighbours<Dim, Real> neighbours;     // good between sorts
   std::vector<std::uint8_t> near_wall;  // by cluster: a wall may be met before the next sort
@@ -60,7 +74,7 @@ template <int Dim, class Real> struct State {
 
 /// The start of a run, sorted and listed.
 template <int Dim, class Real>
-State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Contact<Dim> contact,
+State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Surroundings<Dim> around,
                             const Start& start);
 
 }  // namespace molten

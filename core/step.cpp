@@ -20,9 +20,36 @@ template <int Dim, class Real> void find_wall_patches(State<Dim, Real>& s) {
 
 bool is_multiple(std::int64_t step, std::int64_t every) { return step > 0 && step % every == 0; }
 
+/// Active particles beyond an outflow plane become padding; the sort that follows drops it.
+template <int Dim, class Real> void remove_outflow(State<Dim, Real>& s) {
+  if (s.neighbours.clusters() == 0) return;  // never sorted yet
+  const auto x = s.particles[position];
+  const auto ids = s.particles[id][0];
+  const std::size_t first = s.neighbours.first_slot(Block::active);
+  const auto is_beyond = [&](std::size_t slot, const Plane& plane) {
+    double height = 0;
+    for (int d = 0; d < Dim; ++d) height += (x[d][slot] - plane.point[d]) * plane.normal[d];
+    return height > 0;
+  };
+  const std::size_t removed = reduce_slots(
+      s.particles.slots() - first, std::size_t{0},
+      [&](std::size_t k, std::size_t& count) {
+        if (s.particles.is_padding(first + k)) return;
+        for (const Plane& plane : s.parameters.outflows) {
+          if (!is_beyond(first + k, plane)) continue;
+          ids[first + k] = padding_id;
+          ++count;
+          return;
+        }
+      },
+      [](std::size_t& a, std::size_t b) { a += b; });
+  s.particles.forget(removed);
+}
+
 }  // namespace
 
 template <int Dim, class Real> void step(State<Dim, Real>& s) {
+  if (s.features.vents) emit(s);
   if (s.features.sleep) wake_and_rest(s);
   const bool filter = s.features.density_filter && is_multiple(s.clock.step, s.parameters.density_filter.every);
   if (filter) filter_density(s);
@@ -57,6 +84,7 @@ template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s) {
 }
 
 template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s) {
+  if (s.features.outflow) remove_outflow(s);
   if (s.features.sleep) return sort_active(s);
   const auto scope = s.timer.scope("sort and list");
   s.neighbours.rebuild(s.particles);
@@ -64,10 +92,11 @@ template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s) {
   prepare(s);
 }
 
-/// A cluster is near a wall if a particle of it may touch one within a spacing of its way.
+/// A cluster is near a wall if a particle of it may touch one within a spacing of its way and a body's.
 template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s) {
   s.near_wall.assign(s.neighbours.clusters(), 0);
   if (!s.features.contact) return;
+  if (s.features.bodies) s.bodies.place(s.contact);
   const auto x = s.particles[position];
   const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
   for_each_slot(s.neighbours.clusters() - first, [&](std::size_t n) {
@@ -104,7 +133,8 @@ template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
   if (p.fixed_dt) {
     limit(*p.fixed_dt, Limit::fixed);
   } else {
-    limit(p.courant_sound * h / (p.eos.sound_speed + std::sqrt(s.extremes.speed2)), Limit::sound);
+    const double fastest = std::max(std::sqrt(s.extremes.speed2), s.bodies.fastest());
+    limit(p.courant_sound * h / (p.eos.sound_speed + fastest), Limit::sound);
     limit(p.courant_force * std::sqrt(h / (std::sqrt(s.extremes.acceleration2) + 1e-300)), Limit::force);
     // The force of a varying viscosity has two parts that both damp the shortest waves: half the step is stable.
     double viscous = s.features.stress ? p.courant_viscous / 2 : p.courant_viscous;

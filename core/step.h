@@ -28,6 +28,9 @@ template <int Dim, class Real> void sum_density(State<Dim, Real>& s);
 
 /// The kernel-gradient correction and the velocity of shifting. Only where the scene asks for corrected gradients.
 template <int Dim, class Real> void find_corrections(State<Dim, Real>& s);
+/// Lets a vent's next layer of particles in when there is room for it; puts the first ones in at the start of a run.
+template <int Dim, class Real> void emit(State<Dim, Real>& s);
+template <int Dim, class Real> void open_vents(State<Dim, Real>& s);
 
 /// Strain rate → viscosity and stress ([P] alg. 3, lines 3-6). Only where the viscosity varies.
 template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s);
@@ -42,7 +45,8 @@ template <int Dim, class Real> void require_sane(const State<Dim, Real>& s);
 /// The largest stable time step and what limits it (physics: [P] 6-17 with a coefficient for each limit).
 template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s);
 
-/// Moves the particles, bouncing them off walls ([P] alg. 3, lines 12-16); prepares what the next passes read.
+/// Moves the particles and bodies, bouncing the particles off walls ([P] alg. 3, lines 12-16); prepares what the next
+/// passes read.
 template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s);
 
 /// Temperature and pressure columns that passes read, from the state, of the slots from `first_slot` on; for the start

@@ -40,7 +40,7 @@ SIZES = {
     "poiseuille": ([10, 20, 40], 20), "smd-channel": ([8, 16, 32], 8), "bingham-channel": ([8, 16, 32], 8),
     "hot-spot": ([25, 50, 100, 200], 50), "two-slabs": ([25, 50, 100, 200], 50),
     "standing-wave": ([16, 32, 64], 24), "hydrostatic-box": ([16, 32, 64], 32), "hydrostatic-bowl": ([16, 32], 16),
-    "slope-yield": ([8, 16, 32], 8),
+    "slope-yield": ([8, 16, 32], 8), "floating-box": ([20, 40], 20), "vent-flux": ([10, 20, 40], 20),
     "elliptic-drop": ([20, 40, 80, 160], 40), "rotating-patch": ([25, 50, 100], 50),
     "cruchaga-a": ([18, 36, 72], 36), "cruchaga-b": ([18, 36, 72], 36), "lobovsky-front": ([30, 60, 120], 40),
     "lobovsky-pressure": ([30, 60, 120], 40), "martin-moyce": ([15, 30, 60], 30), "koshizuka": ([20, 40, 80], 40),

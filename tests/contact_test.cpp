@@ -254,6 +254,50 @@ TEST(Contact, RollsOverAConvexEdge) {
   EXPECT_LT(m.position.z(), -1);
 }
 
+// --- Friction -------------------------------------------------------------------------------------------------------
+
+/// How fast (m/s) a particle goes after 10 s on a slope of 30 degrees with gravity 9.81 m/s².
+double speed_down_a_slope(const Response::Grip& grip, double dt) {
+  const Point<2> n(std::sin(M_PI / 6), std::cos(M_PI / 6)), down(n.y(), -n.x());
+  const auto contact = contact_with<2>({plane<2>({0, 0}, n, {0, 0, grip})});
+  auto m = motion<2>(n * (radius + skin), {0, 0});
+  for (int step = 0; step * dt < 10 - dt / 2; ++step) {
+    m.velocity.y() -= 9.81 * dt;
+    m.rate = m.velocity;
+    contact.move(m, dt);
+    EXPECT_NEAR(m.position.dot(n), radius, 2 * skin);
+  }
+  return m.velocity.dot(down);
+}
+
+TEST(ContactFriction, CoulombBrakesInProportionToTheNormalForce) {
+  const double along = 9.81 * std::sin(M_PI / 6), across = 9.81 * std::cos(M_PI / 6);
+  for (const double dt : {1e-3, 1e-4}) {
+    EXPECT_NEAR(speed_down_a_slope({0.3, 0}, dt), 10 * (along - 0.3 * across), 1e-6);
+    EXPECT_NEAR(speed_down_a_slope({0, 0}, dt), 10 * along, 1e-6);
+    EXPECT_EQ(speed_down_a_slope({0.6, 0}, dt), 0) << "above tan 30° it rests";
+  }
+}
+
+TEST(ContactFriction, SticksBelowTheYieldStressAndIsDraggedBeyond) {
+  const double along = 9.81 * std::sin(M_PI / 6), across = 9.81 * std::cos(M_PI / 6);
+  for (const double dt : {1e-3, 1e-4}) {
+    EXPECT_EQ(speed_down_a_slope({0, 1.01 * along}, dt), 0);
+    EXPECT_NEAR(speed_down_a_slope({0, 0.6 * along}, dt), 10 * 0.4 * along, 1e-6);
+    EXPECT_NEAR(speed_down_a_slope({0.2, 0.3 * along}, dt), 10 * (0.7 * along - 0.2 * across), 1e-6);
+  }
+}
+
+TEST(ContactFriction, ABounceLosesInProportionToItsImpulse) {
+  const auto contact = contact_with<2>({plane<2>({0, 0}, {0, 1}, {0.5, 0, Response::Grip{0.2, 0}})});
+  auto m = motion<2>({0, 1 + radius}, {3, -4});
+  contact.move(m, 1.0);
+  EXPECT_NEAR((m.velocity - Point<2>(3 - 0.2 * 1.5 * 4, 2)).norm(), 0, 1e-12);
+  auto slow = motion<2>({0, 1 + radius}, {1, -4});
+  contact.move(slow, 1.0);
+  EXPECT_NEAR((slow.velocity - Point<2>(0, 2)).norm(), 0, 1e-12) << "never reversed";
+}
+
 // --- Corners and gaps -----------------------------------------------------------------------------------------------
 
 TEST(Contact, PressedIntoACornerStaysInside) {
@@ -327,6 +371,27 @@ TEST(Contact, SignedDistance) {
   EXPECT_NEAR(contact.signed_distance({2, 2, 2}, 2), std::sqrt(3), 1e-12);
   EXPECT_EQ(contact.signed_distance({0, 0, 0}, 0.5), 0.5);
   EXPECT_NEAR(contact.signed_distance({50, 0, 0}, 100), 49, 1e-12);
+}
+
+/// Falls onto a belt and is looked at after the impact.
+Point<3> after_a_belt(Response response, const Point<3>& belt, const Point<3>& v) {
+  auto wall = plane<3>({0, 0, 0}, {0, 0, 1}, response);
+  wall.skin.velocity = belt;
+  const auto contact = contact_with<3>({wall});
+  auto m = motion<3>({0, 0, 2 * radius}, v);
+  EXPECT_EQ(contact.move(m, 1), 1);
+  return m.velocity;
+}
+
+TEST(Contact, ABeltGivesItsVelocityAlongItself) {
+  const Point<3> v(1, 0, -1);
+  EXPECT_LT((after_a_belt({0.5, 0}, {3, 2, 0}, v) - Point<3>(3, 2, 0.5)).norm(), 1e-12) << "no slip, on the belt";
+  EXPECT_LT((after_a_belt({0.5, 1}, {3, 2, 0}, v) - Point<3>(1, 0, 0.5)).norm(), 1e-12) << "free slip";
+  EXPECT_LT((after_a_belt({0.5, 0.25}, {3, 2, 0}, v) - Point<3>(2.5, 1.5, 0.5)).norm(), 1e-12);
+  EXPECT_LT((after_a_belt({0.5, 0}, {3, 2, -7}, v) - Point<3>(3, 2, 0.5)).norm(), 1e-12)
+      << "the belt itself stays where it is";
+  // Friction acts on the velocity relative to the belt's, (−4, 0): the impulse is 1.5, a quarter of it drags.
+  EXPECT_LT((after_a_belt({0.5, 0, Response::Grip{0.25, 0}}, {5, 0, 0}, v) - Point<3>(1.375, 0, 0.5)).norm(), 1e-12);
 }
 
 TEST(Contact, MayTouchNeverLies) {

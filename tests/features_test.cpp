@@ -215,6 +215,15 @@ TEST(Features, RefusesWhatMakesNoSense) {
       "scene.periodic: needs the size of the period; add domain");
   expect_refused([](Scene& s) { s.numerics.sleep.emplace().temperature_rate = 1; },
                  "numerics.sleep.temperature_rate: ");
+  const auto with = [](IntegratorKind integrator, auto&& edit) {
+    return [=](Scene& s) { s.numerics.integrator = integrator, edit(s); };
+  };
+  const auto moves = [](Scene& s) { s.boundaries.emplace_back().motion.emplace(); };
+  const auto vent = [](Scene& s) { s.vents.emplace_back(); };
+  const auto outflow = [](Scene& s) { s.outflows.emplace_back(); };
+  expect_refused(with(IntegratorKind::runge_kutta_4, moves), "numerics.integrator: runge-kutta-4 knows no walls that");
+  expect_refused(with(IntegratorKind::energy_bounded_euler, vent), "numerics.integrator: energy-bounded-euler knows");
+  expect_refused(with(IntegratorKind::predictor_corrector, outflow), "numerics.integrator: predictor-corrector knows");
 }
 
 TEST(Features, RefusesADensityBySummationWithWhatActsOnItsRate) {

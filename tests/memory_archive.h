@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/archive.h"
+#include "core/state.h"
 
 namespace molten {
 
@@ -72,5 +72,18 @@ class MemoryArchive : public Archive {
   bool loading_ = false;
   std::map<std::string, Entry> entries_;
 };
+
+template <int Dim, class Real> MemoryArchive archived(State<Dim, Real>& s) {
+  MemoryArchive a;
+  s.archive(a);
+  return a;
+}
+
+/// The same for a state to take it up from.
+template <int Dim, class Real> MemoryArchive saved(State<Dim, Real>& s) {
+  MemoryArchive a = archived(s);
+  a.rewind();
+  return a;
+}
 
 }  // namespace molten

@@ -73,18 +73,37 @@ void expect_same_run(const fs::path& a, const fs::path& b) {
 
 // ---- the runs -------------------------------------------------------------------------------------------------------
 
-/// Everything at once: melting SMD fluid with XSPH that meets a floor, a post and a slope.
+/// Everything at once: melting SMD fluid with XSPH that meets a floor, a post, and, where the method knows them, a ball
+/// that moves and one that falls, while a vent lets more in and a plane takes it out; or walls with support.
 std::string full_scene(int dimensions, const std::string& precision, const std::string& integrator,
                        const std::string& more = "") {
   const bool flat = dimensions == 2;
   const std::string body = flat ? "box = { min = [0.0, 0.02], max = [0.3, 0.32] }\nspacing = 0.015"
                                 : "box = { min = [0.0, 0.0, 0.02], max = [0.2, 0.2, 0.22] }\nspacing = 0.02";
   const std::string walls =
-      flat ? "plane = { point = [0, 0], normal = [0, 1] }\n[[boundary]]\nsphere = { center = [0.4, 0.0], radius = 0.06 "
-             "}\n"
-             "slip = 0.7\nrestitution = 0.2\n"
+      flat ? "plane = { point = [0, 0], normal = [0, 1] }\n[[boundary]]\n"
+             "sphere = { center = [0.4, 0.0], radius = 0.06 }\nslip = 0.7\nrestitution = 0.2\n"
            : "plane = { point = [0, 0, 0], normal = [0, 0, 1] }\n[[boundary]]\n"
              "sphere = { center = [0.27, 0.1, 0.0], radius = 0.05 }\nslip = 0.7\nrestitution = 0.2\n";
+  const bool two_step = integrator == "leap_frog" || integrator == "symplectic_euler";
+  const bool support = integrator == "symplectic_euler";
+  const std::string moving =
+      !two_step || support ? ""
+      : flat               ? "[[boundary]]\nsphere = { center = [0.36, 0.2], radius = 0.04 }\n"
+                             "motion = { velocity = [-1.0, 0.5], spin = 90 }\nfriction = 0.3\n[[boundary]]\n"
+                             "sphere = { center = [0.1, 0.4], radius = 0.06 }\n"
+                             "body = { density = 2000, velocity = [0, -2], spin = 100 }\n"
+                           : "[[boundary]]\nsphere = { center = [0.28, 0.1, 0.15], radius = 0.04 }\n"
+                             "motion = { velocity = [-1.0, 0, 0.5], spin = [0, 90, 0] }\nfriction = 0.3\n[[boundary]]\n"
+                             "sphere = { center = [0.1, 0.1, 0.3], radius = 0.06 }\n"
+                             "body = { density = 2000, velocity = [0, 0, -2], spin = [100, 0, 0] }\n";
+  const std::string vents =
+      !two_step ? ""
+      : flat    ? "[[vent]]\ndisc = { centre = [0.7, 0.2], normal = [1, -1], radius = 0.05 }\nrate = 0.2\n"
+                  "temperature = 70\n[[outflow]]\nplane = { point = [0.75, 0.1], normal = [1, -1] }\n"
+                : "[[vent]]\ndisc = { centre = [0.6, 0.1, 0.2], normal = [1, 0, -1], radius = 0.05 }\n"
+                  "table = [[0, 0.01, 70], [0.05, 0.02, 50]]\n"
+                  "[[outflow]]\nplane = { point = [0.65, 0, 0.1], normal = [1, 0, -1] }\n";
   return fmt::format(R"([scene]
 dimensions = {}
 [fluid]
@@ -100,7 +119,7 @@ diffusivity = 1e-4
 melting_range = [40, 60]
 initial = {{ bottom = 20.0, top = 90.0 }}
 [[boundary]]
-{}[run]
+{}{}{}[run]
 end_time = 0.08
 [output]
 frames_per_second = 100
@@ -110,8 +129,8 @@ precision = "{}"
 integrator = "{}"
 xsph = {{ form = "position", epsilon = 0.3 }}
 {}{})",
-                     dimensions, body, flat ? "[0.5, -0.5]" : "[0.5, 0.0, -0.5]", walls, precision, integrator, more,
-                     integrator == "symplectic_euler" ? "wall_support = true\ndensity_diffusion = 0.1\n" : "");
+                     dimensions, body, flat ? "[0.5, -0.5]" : "[0.5, 0.0, -0.5]", walls, moving, vents, precision,
+                     integrator, more, support ? "wall_support = true\ndensity_diffusion = 0.1\n" : "");
 }
 
 /// A scene in a folder of its own, with runs beside it.

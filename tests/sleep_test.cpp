@@ -264,12 +264,6 @@ TYPED_TEST(SleepOf, WhatMeltsWakes) {
   EXPECT_LT(change, 7);
 }
 
-template <int Dim, class Real> auto archived(State<Dim, Real>& s) {
-  MemoryArchive a;
-  s.archive(a);
-  return a;
-}
-
 template <int Dim, class Real> auto archived_after(const Scene& scene, const Start& start, int threads, int steps) {
   const WithThreads set(threads);
   auto s = state_of<Dim, Real>(scene, start);
@@ -294,9 +288,8 @@ TYPED_TEST(SleepOf, SurvivesARestartBitForBit) {
     bool slept = false;
     for (int piece = 0; piece < 20; ++piece) {
       auto other = state_of<Dim, Real>(scene, start);
-      MemoryArchive saved = archived(whole);
-      saved.rewind();
-      other.archive(saved);
+      MemoryArchive checkpoint = saved(whole);
+      other.archive(checkpoint);
       for (int k = 0; k < 8; ++k) step(whole), step(other);
       ASSERT_TRUE(archived(whole) == archived(other)) << "from step " << 8 * piece;
       slept |= whole.sleep.asleep > 0;

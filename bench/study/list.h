@@ -17,6 +17,8 @@ Case standing_wave();
 Case hydrostatic_box();
 Case hydrostatic_bowl();
 Case slope_yield();
+Case floating_box();
+Case vent_flux();
 Case elliptic_drop();
 Case rotating_patch();
 Case cruchaga_a();

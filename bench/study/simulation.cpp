@@ -4,9 +4,11 @@
 
 #include <chrono>
 
+#include "core/diagnostics.h"
 #include "core/error.h"
 #include "core/step.h"
 #include "io/geometry/assemble.h"
+#include "io/geometry/vents.h"
 #include "io/scene/scene_file.h"
 
 namespace molten::study {
@@ -16,8 +18,10 @@ namespace {
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Setup& setup) {
-  const Parameters<Dim> p = parameters_of<Dim>(scene, setup.start);
-  State<Dim, Real> s = make_state<Dim, Real>(features_of(scene), p, build_contact(scene, p), setup.start);
+  Start start = setup.start;
+  describe_vents(scene, start);
+  const Parameters<Dim> p = parameters_of<Dim>(scene, start);
+  State<Dim, Real> s = make_state<Dim, Real>(features_of(scene), p, build_surroundings(scene, start, p), start);
   if (setup.pressure.empty()) return s;
   for (std::size_t slot = 0; slot < s.particles.slots(); ++slot) {
     if (s.particles.is_padding(slot)) continue;
@@ -61,6 +65,7 @@ template <int Dim, class Real> class Engine : public Simulation {
       c.pressure.push_back(p.eos.pressure(delta));
       if (state_.features.heat) c.temperature.push_back(state_.particles[temperature][0][slot]);
     }
+    c.bodies = snapshots_of(state_.bodies);
     return c;
   }
 

@@ -9,6 +9,7 @@
 
 #include "bench/study/case.h"
 #include "core/parameters.h"
+#include "core/snapshot.h"
 
 namespace molten::study {
 
@@ -23,6 +24,7 @@ struct Cloud {
   std::vector<Triple> position, velocity;  // m, m/s
   std::vector<double> density, pressure;   // kg/m³, Pa
   std::vector<double> temperature;         // empty without heat
+  std::vector<SnapshotBody> bodies;
 
   std::size_t count() const { return id.size(); }
 };

@@ -1,20 +1,18 @@
 #include "core/boundary/contact.h"
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <string>
-#include <tuple>
+#include <utility>
 
-#include "core/boundary/facet_grid.h"
-#include "core/boundary/wall_surface.h"
+#include "core/boundary/surface_search.h"
+#include "core/boundary/touching.h"
 #include "core/error.h"
 
 namespace molten {
 namespace {
 
-constexpr int most_bounces = 8;    // a step; then the motion stops at the last contact
-constexpr int most_pushes = 8;     // a step, out of an overlap
-constexpr int most_responses = 8;  // to walls touched at once, before the velocity is led along the crease between them
+constexpr int most_bounces = 8;  // a step; then the motion stops at the last contact
+constexpr int most_pushes = 8;   // a step, out of an overlap
 
 /// The gap that a contact leaves, relative to the radius: much more than round-off, so that neither 1e6 steps at rest
 /// nor the edges inside a flat wall are felt, and much less than anything physical.
@@ -23,221 +21,139 @@ constexpr double skin_round_off = 1e-14;  // the least gap, relative to the larg
 
 constexpr double absurd = 1e150;  // m: a longer path, or one that is not a number, has diverged; its square overflows
 
-/// The walls that a particle touches at the same moment.
-template <int Dim> struct Touching {
-  std::array<Point<Dim>, most_bounces> normal;
-  std::array<double, most_bounces> restitution;
-  int count = 0;
-};
-
-template <int Dim> bool approaches(const Point<Dim>& u, const Point<Dim>& normal) {
-  return u.dot(normal) < -sliding_tolerance * u.norm();
-}
-
-template <int Dim> int approached(const Point<Dim>& u, const Touching<Dim>& touching, int from = 0) {
-  for (int k = from; k < touching.count; ++k)
-    if (approaches<Dim>(u, touching.normal[k])) return k;
-  return touching.count;
-}
-
-/// What is left of u when it may approach none of the walls: along one wall, along the crease of two, or nothing.
-template <int Dim> Point<Dim> along_crease(Point<Dim> u, const Touching<Dim>& touching) {
-  const int a = approached<Dim>(u, touching);
-  if (a == touching.count) return u;
-  const Point<Dim> n = touching.normal[a];
-  const Point<Dim> slide = u - u.dot(n) * n;
-  if (approached<Dim>(slide, touching) == touching.count) return slide;
-  if constexpr (Dim == 3) {
-    for (int b = 0; b < touching.count; ++b) {
-      const Point<3> crease = n.cross(touching.normal[b]);
-      if (crease.squaredNorm() < 1e-20) continue;
-      const Point<3> along = crease * (crease.dot(u) / crease.squaredNorm());
-      if (approached<3>(along, touching) == touching.count) return along;
-    }
+template <int Dim> double largest_coordinate(const std::vector<Wall<Dim>>& walls) {
+  double extent = 0;
+  for (const Wall<Dim>& wall : walls) {
+    for (const auto& v : wall.vertices) extent = std::max(extent, v.template lpNorm<Eigen::Infinity>());
+    if (wall.is_plane) extent = std::max(extent, wall.plane_point.template lpNorm<Eigen::Infinity>());
   }
-  return Point<Dim>::Zero();
+  return extent;
 }
 
-/// [P] 6.3.1 at the wall that was touched last; then the normal part alone at walls still touched that it now
-/// approaches.
-template <int Dim> void respond(Point<Dim>& u, const Touching<Dim>& touching, double slip) {
-  const int last = touching.count - 1;
-  const Point<Dim>& n = touching.normal[last];
-  const double normal_part = u.dot(n);
-  u = slip * (u - normal_part * n) + (normal_part < 0 ? -touching.restitution[last] : 1.0) * normal_part * n;
-  for (int i = 0; i < most_responses; ++i) {
-    const int k = approached<Dim>(u, touching);
-    if (k == touching.count) return;
-    u -= (1 + touching.restitution[k]) * u.dot(touching.normal[k]) * touching.normal[k];
-  }
-  u = along_crease<Dim>(u, touching);
+template <int Dim> void require_planes(const std::vector<Wall<Dim>>& walls) {
+  for (std::size_t w = 0; w < walls.size(); ++w)
+    if (walls[w].is_plane &&
+        (!walls[w].plane_point.allFinite() || !(std::abs(walls[w].plane_normal.norm() - 1) < 1e-6)))
+      throw Error(ExitCode::geometry, "wall " + std::to_string(w) + ": a plane needs a point and a unit normal");
+}
+
+/// A turning body has set a particle aside, by the bend of its way during the step: the moment of that, too, is shared.
+template <int Dim>
+void set_aside(const Motion<Dim>& m, const Point<Dim>& by, std::int32_t body, std::span<Kick<Dim>> kicks) {
+  if (!kicks.empty()) kicks[body].angular += moment_of(by, m.velocity);
 }
 
 }  // namespace
 
 template <int Dim> struct Contact<Dim>::Impl {
-  /// The first wall met, by the fraction t of the path. `rank` breaks ties: planes, then facets, in the order given.
-  struct First {
-    double key = HUGE_VAL, t = 0;
-    std::int64_t rank = -1;
-    Point<Dim> normal = Point<Dim>::Zero();
-    std::int32_t wall = 0;
+  /// Walls that move together: the fixed ones, or one body's.
+  struct Group {
+    std::unique_ptr<SurfaceSearch<Dim>> search;
+    std::vector<Wall<Dim>> walls;  // without their vertices and facets
+    std::int32_t body = -1;
+    double extent = 0;  // m, from the body's centre; infinite with planes
+    RigidMotion<Dim> motion;
   };
 
-  /// The nearest point of a wall; `normal` points to its front side.
-  struct Near {
-    double key = HUGE_VAL, distance = 0;
-    bool behind = false;
-    std::int64_t rank = -1;
-    Point<Dim> point = Point<Dim>::Zero(), normal = Point<Dim>::Zero();
+  /// The first contact of a path that takes the times `from` to `to` (s) of the step.
+  struct Meeting {
+    FirstContact<Dim> contact;
+    const Group* group = nullptr;
+    Point<Dim> path = Point<Dim>::Zero(), start = Point<Dim>::Zero();  // m; in the group's frame
   };
-
-  Impl(std::vector<Wall<Dim>> all, double r, double cell);
-  bool near_wall(const Point<Dim>& x, double reach) const;
-  int move(Motion<Dim>& motion, double dt) const;
-  First first_contact(const Point<Dim>& x, const Point<Dim>& d, double r) const;
-  void meet_facet(First& first, std::int32_t facet, const Point<Dim>& x, const Point<Dim>& d, double r) const;
-  Near nearest_held(const Point<Dim>& x) const;
-  Near nearest_any(const Point<Dim>& x, double limit) const;
-  void come_near(Near& best, std::int32_t facet, const Point<Dim>& x, double limit, bool past_rims) const;
-  void come_near_planes(Near& best, const Point<Dim>& x, double limit) const;
+  Impl(std::vector<Wall<Dim>> walls, double r, double cell, SearchMethod method);
+  bool near_body(const Group& group, const Point<Dim>& x, double reach, double dt) const;
+  bool near_wall(const Point<Dim>& x, double reach, double dt) const;
+  int move(Motion<Dim>& motion, double dt, std::span<Kick<Dim>> kicks) const;
+  Meeting first_contact(const Point<Dim>& x, const Point<Dim>& d, double r, double from, double to) const;
+  NearestWall<Dim> nearest_held(const Point<Dim>& x) const;
+  NearestWall<Dim> nearest_any(const Point<Dim>& x, double limit) const;
   double settle(Point<Dim>& x) const;
-  bool push_out(Point<Dim>& x, const Near& near) const;
+  bool push_out(Point<Dim>& x, const NearestWall<Dim>& near) const;
 
-  std::vector<Wall<Dim>> walls;    // without their vertices and facets
-  std::vector<Response> response;  // by wall
-  struct Plane {
-    Point<Dim> point, normal;
-    std::int32_t wall;
-  };
-  std::vector<Plane> planes;
-  WallSurface<Dim> surface;
-  FacetGrid<Dim> grid;
+  Group fixed;
+  std::vector<Group> bodies;
   double radius, skin;
 };
 
 template <int Dim>
-Contact<Dim>::Impl::Impl(std::vector<Wall<Dim>> all, double r, double cell)
-    : walls(std::move(all)), surface(walls), radius(r) {
-  double extent = surface.extent();
-  for (std::size_t w = 0; w < walls.size(); ++w) {
-    const Wall<Dim>& wall = walls[w];
-    response.push_back(wall.response);
-    if (!wall.is_plane) continue;
-    if (!wall.plane_point.allFinite() || !(std::abs(wall.plane_normal.norm() - 1) < 1e-6))
-      throw Error(ExitCode::geometry, "wall " + std::to_string(w) + ": a plane needs a point and a unit normal");
-    planes.push_back({wall.plane_point, wall.plane_normal.normalized(), static_cast<std::int32_t>(w)});
-    extent = std::max(extent, wall.plane_point.template lpNorm<Eigen::Infinity>());
-  }
+Contact<Dim>::Impl::Impl(std::vector<Wall<Dim>> walls, double r, double cell, SearchMethod method) : radius(r) {
+  require_planes(walls);
   if (!(r > 0) || !(cell > 0)) throw Error(ExitCode::geometry, "contact: the radius and the cell must be positive");
-  skin = std::max(skin_ratio * r, skin_round_off * extent);
-  grid = FacetGrid<Dim>(surface.facets(), r + 4 * skin, cell);
-  for (Wall<Dim>& wall : walls) wall.vertices = {}, wall.facets = {};
+  skin = std::max(skin_ratio * r, skin_round_off * largest_coordinate(walls));
+  std::int32_t last = -1;
+  for (const Wall<Dim>& wall : walls) last = std::max(last, wall.body);
+  const auto fill = [&](Group& group, std::int32_t body) {
+    for (Wall<Dim>& wall : walls)
+      if (wall.body == body) group.walls.push_back(std::move(wall));
+    group.search = std::make_unique<SurfaceSearch<Dim>>(group.walls, r, skin, cell, method);
+    group.body = body;
+    group.extent = group.search->has_planes() ? HUGE_VAL : group.search->extent();
+    for (Wall<Dim>& wall : group.walls) wall.vertices = {}, wall.facets = {};
+  };
+  fill(fixed, -1);
+  bodies.resize(static_cast<std::size_t>(last + 1));
+  for (std::size_t b = 0; b < bodies.size(); ++b) fill(bodies[b], static_cast<std::int32_t>(b));
 }
 
-template <int Dim> bool Contact<Dim>::Impl::near_wall(const Point<Dim>& x, double reach) const {
-  for (const Plane& p : planes)
-    if (std::abs(p.normal.dot(x - p.point)) <= reach + radius + 4 * skin) return true;
-  return grid.any_within(x, reach);
+/// `reach`: the particle's own way.
+template <int Dim>
+bool Contact<Dim>::Impl::near_body(const Group& group, const Point<Dim>& x, double reach, double dt) const {
+  const RigidMotion<Dim>& m = group.motion;
+  const double apart = (x - m.start.centre).norm(), all = radius + 4 * skin + reach + dt * m.velocity.norm();
+  if (apart > group.extent + all) return false;
+  const double turning = m.spin.norm() * dt * std::min(apart + all, group.extent);
+  return group.search->any_within(m.start.to_body(x), reach + dt * m.velocity.norm() + turning);
+}
+
+template <int Dim> bool Contact<Dim>::Impl::near_wall(const Point<Dim>& x, double reach, double dt) const {
+  if (fixed.search->any_within(x, reach)) return true;
+  for (const Group& group : bodies)
+    if (near_body(group, x, reach, dt)) return true;
+  return false;
 }
 
 template <int Dim>
-void Contact<Dim>::Impl::meet_facet(First& first, std::int32_t facet, const Point<Dim>& x, const Point<Dim>& d,
-                                    double r) const {
-  const Facet<Dim>& f = surface.facets()[facet];
-  const double height = f.normal.dot(x - f.corner[0]);
-  if (misses_slab(height, -f.normal.dot(d), r)) return;
-  const auto hit = sweep_facet(f, x, d, r);
-  if (!hit) return;
-  // The centre has settled in front of all walls, so a face that holds from behind is the back of a thin plate.
-  if (hit->feature == Feature::face && height < -r / 2) return;
-  First found{hit->t, hit->t, static_cast<std::int64_t>(planes.size()) + facet, hit->normal, surface.wall(facet)};
-  if (hit->feature != Feature::face) {
-    const Crease crease = surface.crease(facet, hit->feature, hit->index);
-    if (crease != Crease::rim &&
-        hit->normal.dot(surface.pseudo_normal(facet, hit->feature, hit->index)) < -side_tolerance)
-      return;
-    if (crease == Crease::smooth) {  // the face decides: no bumps at edges inside a flat wall
-      if (!approaches<Dim>(d, f.normal)) return;
-      found.normal = f.normal;
-    }
-    found.key += skin / d.norm();  // faces win ties
+typename Contact<Dim>::Impl::Meeting Contact<Dim>::Impl::first_contact(const Point<Dim>& x, const Point<Dim>& d,
+                                                                       double r, double from, double to) const {
+  Meeting first{fixed.search->first_contact(x, d, r), &fixed, d, x};
+  for (const Group& group : bodies) {
+    if (!near_body(group, x, d.norm(), to)) continue;
+    const Point<Dim> start = group.motion.after(from).to_body(x), end = group.motion.after(to).to_body(x + d);
+    const auto contact = group.search->first_contact(start, end - start, r);
+    if (contact.rank >= 0 && contact.key < first.contact.key) first = {contact, &group, end - start, start};
   }
-  if (std::tie(found.key, found.rank) < std::tie(first.key, first.rank)) first = found;
-}
-
-template <int Dim>
-typename Contact<Dim>::Impl::First Contact<Dim>::Impl::first_contact(const Point<Dim>& x, const Point<Dim>& d,
-                                                                     double r) const {
-  First first;
-  for (std::size_t p = 0; p < planes.size(); ++p) {
-    const auto hit = sweep_plane<Dim>(planes[p].point, planes[p].normal, x, d, r);
-    if (hit && hit->t < first.key) first = {hit->t, hit->t, static_cast<std::int64_t>(p), hit->normal, planes[p].wall};
-  }
-  grid.walk(x, d, [&](std::span<const std::int32_t> facets, double end) {
-    for (const std::int32_t facet : facets) meet_facet(first, facet, x, d, r);
-    return first.key > end;
-  });
   return first;
 }
 
-template <int Dim>
-void Contact<Dim>::Impl::come_near(Near& best, std::int32_t facet, const Point<Dim>& x, double limit,
-                                   bool past_rims) const {
-  const Facet<Dim>& f = surface.facets()[facet];
-  const double height = f.normal.dot(x - f.corner[0]);
-  if (further_than<Dim>(f, x, limit)) return;
-  const auto near = nearest_point(f, x);
-  if (!(near.distance < limit)) return;
-  const Point<Dim> away = x - near.point;
-  const bool rim = surface.crease(facet, near.feature, near.index) == Crease::rim;
-  const Point<Dim> front = rim ? f.normal : surface.pseudo_normal(facet, near.feature, near.index);
-  const bool face = near.feature == Feature::face;
-  const bool behind = face ? height < 0 : away.dot(front) < -side_tolerance * near.distance;
-  if (behind && rim && !past_rims) return;
-  Near found{near.distance, near.distance, behind, static_cast<std::int64_t>(planes.size()) + facet,
-             near.point,    f.normal};
-  if (behind) found.key += skin;  // of two sides equally near, the front counts
-  if (!face) found.normal = behind || near.distance < skin ? front.normalized() : Point<Dim>(away / near.distance);
-  if (std::tie(found.key, found.rank) < std::tie(best.key, best.rank)) best = found;
-}
-
-template <int Dim> void Contact<Dim>::Impl::come_near_planes(Near& best, const Point<Dim>& x, double limit) const {
-  for (std::size_t p = 0; p < planes.size(); ++p) {
-    const Point<Dim>& n = planes[p].normal;
-    const double height = n.dot(x - planes[p].point), key = height < 0 ? skin - height : height;
-    if (std::abs(height) < limit && key < best.key)
-      best = {key, std::abs(height), height < 0, static_cast<std::int64_t>(p), x - height * n, n};
+/// The nearest wall within a radius that holds a particle at x when the step starts.
+template <int Dim> NearestWall<Dim> Contact<Dim>::Impl::nearest_held(const Point<Dim>& x) const {
+  NearestWall<Dim> best = fixed.search->nearest_held(x);
+  for (const Group& group : bodies) {
+    if (!near_body(group, x, 0, 0)) continue;
+    const Pose<Dim>& pose = group.motion.start;
+    NearestWall<Dim> near = group.search->nearest_held(pose.to_body(x));
+    if (near.rank < 0 || near.key >= best.key) continue;
+    near.point = pose.to_world(near.point);
+    near.normal = pose.turn * near.normal;
+    best = near;
   }
-}
-
-/// The nearest wall within a radius that holds a particle at x: behind an open wall's rim there is nothing to hold it.
-template <int Dim> typename Contact<Dim>::Impl::Near Contact<Dim>::Impl::nearest_held(const Point<Dim>& x) const {
-  Near best;
-  come_near_planes(best, x, radius);
-  for (const std::int32_t facet : grid.near(x)) come_near(best, facet, x, radius, false);
   return best;
 }
 
-template <int Dim>
-typename Contact<Dim>::Impl::Near Contact<Dim>::Impl::nearest_any(const Point<Dim>& x, double limit) const {
-  Near best;
-  come_near_planes(best, x, limit);
-  const Point<Dim> reach = Point<Dim>::Constant(limit);
-  if (limit < 16 * grid.cell())
-    grid.visit_box(x - reach, x + reach, [&](std::span<const std::int32_t> facets) {
-      for (const std::int32_t facet : facets) come_near(best, facet, x, limit, true);
-    });
-  else
-    for (std::size_t f = 0; f < surface.facets().size(); ++f)
-      come_near(best, static_cast<std::int32_t>(f), x, limit, true);
+template <int Dim> NearestWall<Dim> Contact<Dim>::Impl::nearest_any(const Point<Dim>& x, double limit) const {
+  NearestWall<Dim> best = fixed.search->nearest_any(x, limit);
+  for (const Group& group : bodies) {
+    const NearestWall<Dim> near = group.search->nearest_any(group.motion.start.to_body(x), limit);
+    if (near.rank >= 0 && near.key < best.key) best = near;
+  }
   return best;
 }
 
 /// One step out of an overlap. A wall in the way stops it half-way, so that a gap too narrow centres the particle.
-template <int Dim> bool Contact<Dim>::Impl::push_out(Point<Dim>& x, const Near& near) const {
+template <int Dim> bool Contact<Dim>::Impl::push_out(Point<Dim>& x, const NearestWall<Dim>& near) const {
   const Point<Dim> d = (radius + skin - near.distance) * near.normal;
-  const First blocked = first_contact(x, d, near.distance);
+  const FirstContact<Dim> blocked = first_contact(x, d, near.distance, 0, 0).contact;
   const bool free = blocked.rank < 0;
   x += free ? d : Point<Dim>(0.5 * blocked.t * d);
   return free || blocked.t * d.norm() > skin;
@@ -247,62 +163,106 @@ template <int Dim> bool Contact<Dim>::Impl::push_out(Point<Dim>& x, const Near& 
 /// only where it is squeezed. The sweeps use that, so they never start with an overlap.
 template <int Dim> double Contact<Dim>::Impl::settle(Point<Dim>& x) const {
   for (int i = 0; i < most_pushes; ++i) {
-    const Near near = nearest_held(x);
+    const NearestWall<Dim> near = nearest_held(x);
     if (near.rank < 0) return radius;
     if (near.behind)
       x = near.point + skin * near.normal;
     else if (!push_out(x, near))
       break;
   }
-  const Near near = nearest_held(x);
+  const NearestWall<Dim> near = nearest_held(x);
   if (near.rank < 0) return radius;
   return near.behind ? skin : std::max(skin, near.distance);
 }
 
-template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt) const {
+template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt, std::span<Kick<Dim>> kicks) const {
   const Point<Dim> whole = dt * m.rate;
   const double reach = whole.norm();
-  if (!(reach < absurd) || !m.position.allFinite() || !near_wall(m.position, reach)) {
+  if (!(reach < absurd) || !m.position.allFinite() || !near_wall(m.position, reach, dt)) {
     m.position += whole;
     return 0;
   }
   const double r = settle(m.position);
   Touching<Dim> touching;
+  double now = 0;  // s since the start of the step
   for (int bounces = 0; bounces < most_bounces; ++bounces) {
-    const Point<Dim> d = dt * m.rate;
-    if (d.isZero(0)) return bounces;
-    const First hit = first_contact(m.position, d, r);
-    if (hit.rank < 0) {
+    const Point<Dim> d = (dt - now) * m.rate;
+    if (d.isZero(0) && bodies.empty()) return bounces;
+    const Meeting hit = first_contact(m.position, d, r, now, dt);
+    if (hit.contact.rank < 0) {
       m.position += d;
       return bounces;
     }
-    m.position += hit.t * d + skin * hit.normal;
-    dt *= 1 - hit.t;
-    if (hit.t * d.norm() > 4 * skin) touching.count = 0;
-    touching.normal[touching.count] = hit.normal;
-    touching.restitution[touching.count++] = response[hit.wall].restitution;
-    respond<Dim>(m.velocity, touching, response[hit.wall].slip);
-    respond<Dim>(m.rate, touching, response[hit.wall].slip);
+    const RigidMotion<Dim>& motion = hit.group->motion;
+    const double before = std::exchange(now, now + hit.contact.t * (dt - now));
+    // Within the gap that the last contact left the particle has touched the wall all the time.
+    const bool resting = -hit.contact.t * hit.path.dot(hit.contact.normal) <= 4 * skin;
+    const double held = dt - (resting ? before : now);  // s
+    const Wall<Dim>& wall = hit.group->walls[hit.contact.wall];
+    Touch<Dim> touch{hit.contact.normal, Point<Dim>::Zero(), &wall.response, hit.group->body};
+    if (hit.group == &fixed) {
+      m.position += hit.contact.t * d + skin * hit.contact.normal;
+      touch.velocity = wall.skin.velocity_along(touch.normal);
+    } else {
+      const Pose<Dim> pose = motion.after(now);
+      touch.normal = pose.turn * hit.contact.normal;
+      const Point<Dim> straight = m.position + hit.contact.t * d;
+      m.position = pose.to_world(hit.start + hit.contact.t * hit.path + skin * hit.contact.normal);
+      set_aside<Dim>(m, m.position - straight, touch.body, kicks);
+      touch.velocity = motion.velocity_at(m.position, pose.centre);
+    }
+    if (hit.contact.t * hit.path.norm() > 4 * skin) touching.clear();
+    touching.add(touch);
+    touching.respond(m.velocity, held, [&](const Touch<Dim>& by, const Point<Dim>& gain) {
+      if (by.body < 0 || kicks.empty()) return;
+      const Point<Dim> arm = m.position - bodies[by.body].motion.after(dt).centre;
+      kicks[by.body].linear += gain;
+      kicks[by.body].angular += moment_of(arm, gain);
+    });
+    touching.respond(m.rate, held, [](const Touch<Dim>&, const Point<Dim>&) {});
+  }
+  // A body goes on and takes along what it touched last.
+  if (const std::int32_t body = touching.last().body; body >= 0) {
+    const RigidMotion<Dim>& motion = bodies[body].motion;
+    const Point<Dim> before = m.position;
+    m.position = motion.after(dt).to_world(motion.after(now).to_body(m.position));
+    set_aside<Dim>(m, m.position - before, body, kicks);
   }
   return most_bounces;
 }
 
 template <int Dim>
-Contact<Dim>::Contact(std::vector<Wall<Dim>> walls, double radius, double cell)
-    : impl_(std::make_unique<Impl>(std::move(walls), radius, cell)) {}
+Contact<Dim>::Contact(std::vector<Wall<Dim>> walls, double radius, double cell, SearchMethod method)
+    : impl_(std::make_unique<Impl>(std::move(walls), radius, cell, method)) {}
 template <int Dim> Contact<Dim>::~Contact() = default;
 template <int Dim> Contact<Dim>::Contact(Contact&&) noexcept = default;
 template <int Dim> Contact<Dim>& Contact<Dim>::operator=(Contact&&) noexcept = default;
 
-template <int Dim> bool Contact<Dim>::empty() const { return impl_->planes.empty() && impl_->surface.facets().empty(); }
+template <int Dim> bool Contact<Dim>::empty() const { return impl_->bodies.empty() && impl_->fixed.search->empty(); }
+template <int Dim> std::size_t Contact<Dim>::bodies() const { return impl_->bodies.size(); }
 
-template <int Dim> const std::vector<Wall<Dim>>& Contact<Dim>::walls() const { return impl_->walls; }
-template <int Dim> const WallSurface<Dim>& Contact<Dim>::surface() const { return impl_->surface; }
+template <int Dim> const std::vector<Wall<Dim>>& Contact<Dim>::fixed_walls() const { return impl_->fixed.walls; }
+template <int Dim> const WallSurface<Dim>& Contact<Dim>::fixed_surface() const {
+  return impl_->fixed.search->surface();
+}
 
-template <int Dim> int Contact<Dim>::move(Motion<Dim>& motion, double dt) const { return impl_->move(motion, dt); }
+template <int Dim> void Contact<Dim>::set_motion(std::size_t body, const RigidMotion<Dim>& motion) {
+  impl_->bodies[body].motion = motion;
+}
+
+template <int Dim> int Contact<Dim>::move(Motion<Dim>& motion, double dt, std::span<Kick<Dim>> kicks) const {
+  return impl_->move(motion, dt, kicks);
+}
 
 template <int Dim> bool Contact<Dim>::may_touch(const Point<Dim>& x, double reach) const {
-  return impl_->near_wall(x, reach);
+  return impl_->near_wall(x, reach, 0);
+}
+
+template <int Dim>
+bool Contact<Dim>::may_touch_body(std::size_t body, const Pose<Dim>& pose, const Point<Dim>& x, double reach) const {
+  const auto& group = impl_->bodies[body];
+  if ((x - pose.centre).norm() > group.extent + impl_->radius + 4 * impl_->skin + reach) return false;
+  return group.search->any_within(pose.to_body(x), reach);
 }
 
 template <int Dim> double Contact<Dim>::signed_distance(const Point<Dim>& x, double limit) const {

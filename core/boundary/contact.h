@@ -9,36 +9,54 @@
 //   nothing holds it.
 // - A particle with no room (a gap narrower than its diameter, a sharp wedge) goes to the middle and moves as a smaller
 //   one; it stays on the fluid's side.
-// - Walls touched at the same moment: slip acts once per contact; the velocity ends up approaching none of them.
+// - Walls touched at the same moment: slip or friction acts once per contact; the velocity ends up approaching none of
+//   them.
 // - After 8 bounces the motion of this step ends at the last contact.
+// - A two-sided wall is two walls back to back.
+// - A body that moves is met in its own frame, where a particle's way over the step counts as straight: what is in
+// front
+//   of its surface stays there. Between a body and a wall, and between bodies, the same rules hold; a gap that closes
+//   to less than a diameter is no room.
 // - Corners at exactly the same place join, also of different walls. A facet without area holds from all sides.
-// - The same contact time: faces before edges and vertices, then planes, then the lower facet index.
+// - The same contact time: faces before edges and vertices, then planes, then the lower facet index, and walls before
+//   bodies.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
+
+#include "core/boundary/rigid_motion.h"
 
 namespace molten {
 
-template <int Dim> using Point = Eigen::Matrix<double, Dim, 1>;
-
-/// What happens to a velocity at a wall.
+/// What happens to a velocity at a wall, relative to the wall's own.
 struct Response {
   double restitution = 0;  // what the normal part keeps, reversed
   double slip = 0;         // what the tangential part keeps: 0 no-slip, 1 free slip
+  /// Instead of slip: the wall holds the tangential part up to a stress and drags with it beyond (Mohr–Coulomb).
+  struct Grip {
+    double friction = 0;  // Coulomb's coefficient: tangential over normal impulse
+    double hold = 0;      // m/s²; what the stress that sticks, the wall's yield stress, can brake a particle with
+  };
+  std::optional<Grip> grip = std::nullopt;
 };
 
-/// What a wall's surface is like to a fluid that it supports (wall_support.h).
+/// What a wall's surface is like to the fluid; `temperature` and the layer with support alone (wall_support.h).
 template <int Dim> struct WallSkin {
-  Point<Dim> velocity = Point<Dim>::Zero();  // m/s; along the wall: it does not move as a whole
+  Point<Dim> velocity = Point<Dim>::Zero();  // m/s; its part along the wall counts: the wall stays where it is
   std::optional<double> temperature;         // of the surface, or behind the layer; none: insulating
   double layer_diffusivity = 0;              // m²/s, conductivity of a layer over ρ c_p of the fluid; 0: no layer
   double layer_thickness = 0;                // m
+
+  Point<Dim> velocity_along(const Point<Dim>& normal) const { return velocity - velocity.dot(normal) * normal; }
 };
+
+/// How facets are found; `by_rule` is for runs, the others for comparison. All give the same contacts.
+enum class SearchMethod { by_rule, grid, tree };
 
 /// A wall: facets (triangles in 3-D, segments in 2-D) or one infinite plane. One-sided: only particles on the side that
 /// the normals point to are held (segments: the normal is to the left of a → b; triangles: counter-clockwise).
@@ -47,8 +65,10 @@ template <int Dim> struct Wall {
   std::vector<std::array<std::int32_t, Dim>> facets;
   bool is_plane = false;
   Point<Dim> plane_point = Point<Dim>::Zero(), plane_normal = Point<Dim>::Zero();  // m, unit
+  bool two_sided = false;                                                          // facets hold from behind, too
   Response response;
   WallSkin<Dim> skin;
+  std::int32_t body = -1;  // the body that it is part of, whose frame it is given in (rigid_motion.h); −1: fixed
 };
 
 /// A particle in motion. `rate` is what moves the position (velocity, or velocity + XSPH); both are reflected at walls.
@@ -58,29 +78,44 @@ template <int Dim> struct Motion {
 
 template <int Dim> class WallSurface;
 
+/// What a body gives to the particles that hit it, a unit of particle mass.
+template <int Dim> struct Kick {
+  Point<Dim> linear = Point<Dim>::Zero();  // m/s
+  Spin<Dim> angular = Spin<Dim>::Zero();   // m²/s; about the body's centre at the end of the step
+};
+
 template <int Dim> class Contact {
  public:
   /// `radius` (m) of the particles; `cell` (m) of the grid that lists the facets, made larger where huge walls need it.
   /// Throws Error (geometry) on a bad index, a coordinate that is not finite, or a plane without a unit normal.
-  Contact(std::vector<Wall<Dim>> walls, double radius, double cell);
+  Contact(std::vector<Wall<Dim>> walls, double radius, double cell, SearchMethod method = SearchMethod::by_rule);
   ~Contact();
   Contact(Contact&&) noexcept;
   Contact& operator=(Contact&&) noexcept;
 
   bool empty() const;  // no walls
+  std::size_t bodies() const;
 
-  /// The walls as given, less their vertices and facets, which are in the surface.
-  const std::vector<Wall<Dim>>& walls() const;
-  const WallSurface<Dim>& surface() const;
+  /// How a body moves during the step to come.
+  void set_motion(std::size_t body, const RigidMotion<Dim>& motion);
+
+  /// The walls that stay in place, less their vertices and facets, which are in the surface.
+  const std::vector<Wall<Dim>>& fixed_walls() const;
+  const WallSurface<Dim>& fixed_surface() const;
 
   /// Moves a particle by dt (s) along its rate, bouncing; a particle that overlaps a wall at the start is pushed out
   /// along the wall's normal. Returns how many bounces there were. A rate that is not finite moves it all the same.
-  int move(Motion<Dim>& motion, double dt) const;
+  /// `kicks`: one for each body, or none; what the particle's velocity gains at a body is added to the body's.
+  int move(Motion<Dim>& motion, double dt, std::span<Kick<Dim>> kicks = {}) const;
 
   /// False only if no wall can be met within `reach` (m) of x beyond the radius: the cheap test for most particles.
+  /// Bodies count where their motion starts; their own way is part of the reach.
   bool may_touch(const Point<Dim>& x, double reach) const;
 
-  /// Distance (m) from x to the nearest wall surface and the side: negative behind it. Brute force over near cells up
+  /// The same for the walls of one body when it is at `pose`.
+  bool may_touch_body(std::size_t body, const Pose<Dim>& pose, const Point<Dim>& x, double reach) const;
+
+  /// Distance (m) from x to the nearest wall surface and the side: negative behind it. Brute force over what is near up
   /// to `limit`; returns `limit` if none is nearer. For tests, set-up checks and diagnostics.
   double signed_distance(const Point<Dim>& x, double limit) const;
 

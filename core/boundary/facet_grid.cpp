@@ -1,6 +1,7 @@
 #include "core/boundary/facet_grid.h"
 
 #include <Eigen/Geometry>
+#include <bit>
 #include <cmath>
 
 namespace molten {
@@ -158,6 +159,12 @@ bool FacetGrid<Dim>::enter(const Point<Dim>& x, const Point<Dim>& d, double& fir
     last = std::min(last, std::max(a / d[k], b / d[k]));
   }
   return first <= last;
+}
+
+template <int Dim> double FacetGrid<Dim>::mean_list() const {
+  std::size_t lists = 0;
+  for (const std::uint64_t brick : used_) lists += static_cast<std::size_t>(std::popcount(brick));
+  return lists == 0 ? 0 : static_cast<double>(list_.size()) / static_cast<double>(lists);
 }
 
 template <int Dim> std::size_t FacetGrid<Dim>::bytes() const {

@@ -48,6 +48,8 @@ template <int Dim> class FacetGrid {
   template <class Visit> void visit_box(const Point<Dim>& lo, const Point<Dim>& hi, Visit&& visit) const;
 
   double cell() const { return cell_; }
+  /// Facets in the mean list.
+  double mean_list() const;
   std::size_t bytes() const;
 
  private:

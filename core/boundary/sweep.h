@@ -48,6 +48,10 @@ template <int Dim> struct SweepHit {
 /// behind a facet by this fraction of its distance counts as in front.
 inline constexpr double sliding_tolerance = 1e-12, side_tolerance = 1e-9;
 
+template <int Dim> bool approaches(const Point<Dim>& u, const Point<Dim>& normal) {
+  return u.dot(normal) < -sliding_tolerance * u.norm();
+}
+
 /// True if a path whose height above a plane starts at `height` (m) and falls by `descent` (m) stays clear of it.
 inline bool misses_slab(double height, double descent, double radius) {
   const double end = height - descent;

@@ -18,9 +18,9 @@ double stiffness_beside_plane(const RadialIntegrals& radial, double d, double h)
 
 template <int Dim>
 WallSupport<Dim>::WallSupport(const Contact<Dim>& contact, const Parameters<Dim>& p)
-    : integrals_(
-          std::make_shared<WallIntegrals<Dim>>(contact.walls(), contact.surface(), p.kernel, p.smoothing_length)),
-      walls_(contact.walls()),
+    : integrals_(std::make_shared<WallIntegrals<Dim>>(contact.fixed_walls(), contact.fixed_surface(), p.kernel,
+                                                      p.smoothing_length)),
+      walls_(contact.fixed_walls()),
       reach_(integrals_->reach() + p.skin),
       viscous_stiffness_(stiffness_beside_plane(RadialIntegrals(p.kernel, Dim, p.smoothing_length), p.spacing / 2,
                                                 p.smoothing_length)) {}

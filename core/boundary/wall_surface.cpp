@@ -44,6 +44,9 @@ struct Side {
 template <int Dim> WallSurface<Dim>::WallSurface(const std::vector<Wall<Dim>>& walls) {
   for (std::size_t w = 0; w < walls.size(); ++w)
     if (!walls[w].is_plane) add(walls[w], static_cast<std::int32_t>(w));
+  first_back_ = static_cast<std::int32_t>(facets_.size());
+  for (std::int32_t f = 0; f < first_back_; ++f)
+    if (walls[wall_[f]].two_sided) add_back(f);
   for (const auto& f : facets_)
     for (const auto& c : f.corner) extent_ = std::max(extent_, c.template lpNorm<Eigen::Infinity>());
   join_vertices();
@@ -69,9 +72,19 @@ template <int Dim> void WallSurface<Dim>::add(const Wall<Dim>& wall, std::int32_
   }
 }
 
+template <int Dim> void WallSurface<Dim>::add_back(std::int32_t front) {
+  Facet<Dim> back = facets_[front];
+  std::swap(back.corner[0], back.corner[1]);
+  back.normal = -back.normal;
+  facets_.push_back(back);
+  wall_.push_back(wall_[front]);
+}
+
 template <int Dim> void WallSurface<Dim>::join_vertices() {
   const auto corner = [&](std::int32_t c) -> const Point<Dim>& { return facets_[c / Dim].corner[c % Dim]; };
+  const auto is_back = [&](std::int32_t c) { return c / Dim >= first_back_; };
   const auto before = [&](std::int32_t a, std::int32_t b) {
+    if (is_back(a) != is_back(b)) return is_back(b);
     for (int k = 0; k < Dim; ++k)
       if (corner(a)[k] != corner(b)[k]) return corner(a)[k] < corner(b)[k];
     return false;

@@ -1,5 +1,6 @@
 // All facets of all walls as one surface: which facets share an edge or a vertex, and where it is convex. Corners at
-// exactly the same place are one vertex, so that meshes without shared vertices, and walls that meet, join.
+// exactly the same place are one vertex, so that meshes without shared vertices, and walls that meet, join. The back of
+// a two-sided wall is a second, flipped facet; backs join among themselves.
 #pragma once
 
 #include <cstdint>
@@ -38,6 +39,7 @@ template <int Dim> class WallSurface {
 
  private:
   void add(const Wall<Dim>& wall, std::int32_t index);
+  void add_back(std::int32_t front);
   void join_vertices();
   void join_edges();
   void sum_normals();
@@ -45,6 +47,7 @@ template <int Dim> class WallSurface {
 
   std::vector<Facet<Dim>> facets_;
   std::vector<std::int32_t> wall_;
+  std::int32_t first_back_ = 0;
   std::vector<std::array<std::int32_t, Dim>> vertex_;   // of each facet's corners
   std::vector<std::array<std::int32_t, 3>> neighbour_;  // 3-D: the facet across each edge, −1 at a rim
   std::vector<std::array<Crease, 3>> edge_crease_;      // 3-D

@@ -216,6 +216,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   Vec<Dim, L> at_wall(Velocity, const Neighbour<L>& n, const Wall<Dim>& wall, const Own& i) const {
     Vec<Dim, L> own;
     for (int d = 0; d < Dim; ++d) own[d] = L(static_cast<Real>(wall.skin.velocity[d]));
+    own = own - dot(own, n.normal) * n.normal;  // the wall itself stays where it is
     const Vec<Dim, L> beyond = i[velocity] - own;
     return own + L(static_cast<Real>(wall.response.slip)) * (beyond - dot(beyond, n.normal) * n.normal);
   }

@@ -11,8 +11,10 @@
 #include "core/boundary/shapes.h"
 #include "core/error.h"
 #include "core/fill.h"
+#include "io/geometry/bodies.h"
 #include "io/geometry/mesh_file.h"
 #include "io/geometry/terrain.h"
+#include "io/geometry/vents.h"
 #include "io/scene/scene_file.h"
 
 namespace molten {
@@ -45,6 +47,12 @@ void place(TriangleMesh& mesh, const MeshFile& file) {
 }
 
 }  // namespace
+
+TriangleMesh placed_mesh(const Scene& scene, const MeshFile& file) {
+  TriangleMesh mesh = read_mesh(locate(scene, file.path));
+  place(mesh, file);
+  return mesh;
+}
 
 TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, bool must_close) {
   if (shape.terrain) return triangulate(read_terrain(*shape.terrain, locate(scene, shape.terrain->path)));
@@ -143,6 +151,12 @@ Start fill_bodies(const Scene& scene, const Features& features) {
   build(fluid.spacing.value_or(1e300));
   if (!fluid.spacing) build(fitting());
   require_runnable_size(scene, fluid.spacing ? *fluid.spacing : fitting());
+  if (regions.empty()) {  // all of it enters through vents
+    Start start;
+    start.spacing = *fluid.spacing;
+    describe_vents(scene, start);
+    return start;
+  }
   require_memory(scene,
                  fluid.spacing ? measure / std::pow(*fluid.spacing, scene.dimensions) : double(*fluid.particles));
   const Filling filling = filled(scene, regions);
@@ -163,14 +177,31 @@ Start fill_bodies(const Scene& scene, const Features& features) {
     start.temperature.push_back(
         body.temperature.value_or((1 - u) * fluid.heat->initial_bottom + u * fluid.heat->initial_top));
   }
+  describe_vents(scene, start);
   return start;
 }
 
+namespace {
+
+/// A stress holds a particle by the area that it covers: one spacing across, and as thick.
+Response response_of(const Scene& scene, const Boundary& boundary, double spacing) {
+  Response response{boundary.restitution, boundary.slip};
+  if (boundary.friction || boundary.yield_stress)
+    response.grip = {boundary.friction.value_or(0),
+                     boundary.yield_stress.value_or(0) / (scene.fluid.density * spacing)};
+  return response;
+}
+
+}  // namespace
+
 template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing) {
   std::vector<Wall<Dim>> walls;
+  std::int32_t bodies = 0;
   for (const Boundary& boundary : scene.boundaries) {
     Wall<Dim> wall;
-    wall.response = {boundary.restitution, boundary.slip};
+    if (boundary.motion || boundary.body) wall.body = bodies++;
+    wall.response = response_of(scene, boundary, spacing);
+    wall.two_sided = boundary.two_sided;
     for (int d = 0; d < Dim; ++d) wall.skin.velocity[d] = boundary.velocity[d];
     wall.skin.temperature = boundary.temperature;
     if (boundary.ground) {
@@ -201,12 +232,17 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
   return walls;
 }
 
-template <int Dim> Contact<Dim> build_contact(const Scene& scene, const Parameters<Dim>& p) {
-  return {build_walls<Dim>(scene, p.spacing), p.contact_radius, p.support_radius};
+template <int Dim>
+Surroundings<Dim> build_surroundings(const Scene& scene, const Start& start, const Parameters<Dim>& p) {
+  std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
+  Bodies<Dim> bodies = take_bodies(scene, walls);
+  Contact<Dim> contact(std::move(walls), p.contact_radius, p.support_radius);
+  bodies.place(contact);
+  return {std::move(contact), std::move(bodies), build_vents<Dim>(scene, start, p.support_radius)};
 }
 
-template Contact<2> build_contact(const Scene&, const Parameters<2>&);
-template Contact<3> build_contact(const Scene&, const Parameters<3>&);
+template Surroundings<2> build_surroundings(const Scene&, const Start&, const Parameters<2>&);
+template Surroundings<3> build_surroundings(const Scene&, const Start&, const Parameters<3>&);
 template std::vector<Wall<2>> build_walls(const Scene&, double);
 template std::vector<Wall<3>> build_walls(const Scene&, double);
 

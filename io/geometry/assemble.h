@@ -9,20 +9,28 @@
 #include "core/features.h"
 #include "core/parameters.h"
 #include "core/scene.h"
+#include "core/state.h"
 
 namespace molten {
 
 /// The surface of any 3-D shape but a plane, placed; `must_close`: a mesh from a file must be closed.
 TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, bool must_close);
 
-/// The walls of a scene for the solver.
+/// A mesh from a file, turned, scaled and placed as the scene asks; open or closed.
+TriangleMesh placed_mesh(const Scene& scene, const MeshFile& file);
+
+/// The walls of a scene for the solver, one for each boundary; those that move as they are first placed in the world.
 template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing);
 
-/// The same, ready for contact with particles of the run.
-template <int Dim> Contact<Dim> build_contact(const Scene& scene, const Parameters<Dim>& parameters);
+/// The same, ready for a run: contact with its particles, walls that move, vents.
+template <int Dim>
+Surroundings<Dim> build_surroundings(const Scene& scene, const Start& start, const Parameters<Dim>& parameters);
 
-/// The walls as one surface for pictures (2-D outlines: thin strips); planes become squares about the fluid.
+/// The fixed walls as one surface for pictures (2-D outlines: thin strips); planes become squares about the fluid.
 TriangleMesh picture_of_walls(const Scene& scene, const Start& start);
+
+/// The same for each body, in its own frame.
+std::vector<TriangleMesh> pictures_of_bodies(const Scene& scene, const Start& start);
 
 /// The bodies filled with particles. Throws Error(usage) when the run would not fit in memory, Error(geometry) for bad
 /// meshes.
@@ -31,6 +39,11 @@ Start fill_bodies(const Scene& scene, const Features& features);
 /// Throws Error(geometry), with the number of particles and the place of the first, if particles start inside a wall or
 /// on top of each other.
 template <int Dim> void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact);
+
+/// How many of the start's particles are inside a wall; `first`: where the first of them is.
+template <int Dim>
+std::size_t count_inside_walls(const Scene& scene, const Start& start, const Contact<Dim>& contact,
+                               std::array<double, 3>* first = nullptr);
 
 /// Hash of everything that may not change between a stop and its resume: start, walls, numerics.
 std::string fingerprint(const Scene& scene, const Start& start);

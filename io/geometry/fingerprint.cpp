@@ -40,10 +40,37 @@ void add_one(Hash& hash, const Fluid& f) {
   add(hash, density, hydrostatic, rheology, heat);
 }
 
+void add_one(Hash& hash, const Movement& m) {
+  const auto& [velocity, spin, key_frames, centre] = m;
+  add(hash, velocity, spin, key_frames, centre);
+}
+
+void add_one(Hash& hash, const FreeBody& b) {
+  const auto& [density, velocity, spin] = b;
+  add(hash, density, velocity, spin);
+}
+
+void add_one(Hash& hash, const Vent::Entry& e) {
+  const auto& [time, rate, temperature] = e;
+  add(hash, time, rate, temperature);
+}
+
+/// Without the mesh: the start has the vents' mouths.
+void add_one(Hash& hash, const Vent& v) {
+  const auto& [centre, normal, radius, mesh, table, place] = v;
+  add(hash, centre, normal, radius, table);
+}
+
+void add_one(Hash& hash, const Plane& p) {
+  const auto& [point, normal] = p;
+  add(hash, point, normal);
+}
+
 /// Without the shape, which the walls have.
 void add_one(Hash& hash, const Boundary& b) {
-  const auto& [shape, restitution, slip, velocity, temperature, ground, inside] = b;
-  add(hash, restitution, slip, velocity, temperature, ground, inside);
+  const auto& [shape, motion, body, restitution, slip, friction, yield_stress, velocity, temperature, ground, inside,
+               two_sided] = b;
+  add(hash, motion, body, restitution, slip, friction, yield_stress, velocity, temperature, ground, inside, two_sided);
 }
 
 void add_one(Hash& hash, const Xsph& x) {
@@ -86,14 +113,14 @@ void add_one(Hash& hash, const Box& b) {
 }
 
 void add_one(Hash& hash, const Scene& s) {
-  const auto& [title, file, text, places, dimensions, gravity, periodic, domain, fluid, boundaries, numerics, run,
-               output] = s;
-  add(hash, dimensions, gravity, periodic, domain, fluid, boundaries, numerics);
+  const auto& [title, file, text, places, dimensions, gravity, periodic, domain, fluid, boundaries, vents, outflows,
+               numerics, run, output] = s;
+  add(hash, dimensions, gravity, periodic, domain, fluid, boundaries, vents, outflows, numerics);
 }
 
 void add_one(Hash& hash, const Start& s) {
-  const auto& [spacing, measure, position, velocity, temperature] = s;
-  add(hash, spacing, measure, position, velocity, temperature);
+  const auto& [spacing, measure, position, velocity, temperature, vents, vent_speed] = s;
+  add(hash, spacing, measure, position, velocity, temperature, vents, vent_speed);
 }
 
 template <class T>

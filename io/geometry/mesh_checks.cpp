@@ -319,4 +319,21 @@ FacesInFile check_ply(const std::string& bytes) {
   return check.found;
 }
 
+FacesInFile check_glb(const std::string& bytes) {
+  constexpr std::uint32_t magic = 0x46546C67, json = 0x4E4F534A;  // "glTF", "JSON"
+  std::array<std::uint32_t, 5> head{};                            // magic, version, length; length and type of a chunk
+  if (bytes.size() < sizeof head)
+    refuse("it is not a binary glTF file: it has only " + std::to_string(bytes.size()) + " bytes");
+  std::memcpy(head.data(), bytes.data(), sizeof head);
+  if (head[0] != magic) refuse("it is not a binary glTF file (it does not begin with `glTF`)");
+  if (head[1] != 2) refuse("it has glTF version " + std::to_string(head[1]) + "; only version 2 is read");
+  if (head[2] != bytes.size())
+    refuse("it is truncated: it promises " + std::to_string(head[2]) + " bytes and has " +
+           std::to_string(bytes.size()));
+  if (head[4] != json || head[3] > bytes.size() - sizeof head) refuse("it does not begin with a JSON chunk");
+  const std::string_view text = std::string_view(bytes).substr(sizeof head, head[3]);
+  if (text.find("\"uri\"") != std::string_view::npos) refuse("it refers to other files: export it as one .glb");
+  return {1, false};
+}
+
 }  // namespace molten

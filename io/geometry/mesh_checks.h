@@ -19,5 +19,7 @@ struct FacesInFile {
 FacesInFile check_obj(std::string& text);
 FacesInFile check_stl(const std::string& bytes);
 FacesInFile check_ply(const std::string& bytes);
+/// Binary glTF: the chunks; how often its meshes stand in the scene is left to the reader.
+FacesInFile check_glb(const std::string& bytes);
 
 }  // namespace molten

@@ -1,5 +1,6 @@
 #include "io/geometry/mesh_file.h"
 
+#include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -41,8 +42,8 @@ std::string extension_of(const fs::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".obj" && extension != ".stl" && extension != ".ply")
-    refuse(file, "unknown kind of mesh file: convert it to OBJ, STL or PLY");
+  if (extension != ".obj" && extension != ".stl" && extension != ".ply" && extension != ".glb")
+    refuse(file, "unknown kind of mesh file: convert it to OBJ, STL, PLY or binary glTF (.glb)");
   return extension.substr(1);
 }
 
@@ -53,7 +54,7 @@ std::string bytes_of(const fs::path& file) {
     const bool fetched = file.generic_string().find("models/") != std::string::npos;
     refuse(file, fetched ? "no such file: run scripts/models to fetch the models" : "no such file: check the path");
   }
-  if (!fs::is_regular_file(status)) refuse(file, "not a file: give an OBJ, STL or PLY file");
+  if (!fs::is_regular_file(status)) refuse(file, "not a file: give an OBJ, STL, PLY or GLB file");
   const std::uintmax_t size = fs::file_size(file, error);
   if (error || size > largest_file) refuse(file, "larger than 4 GiB: reduce the mesh");
   std::ifstream in(file, std::ios::binary);
@@ -82,7 +83,7 @@ struct PointHash {
 /// Welds vertices that share a position, in the order of their first use.
 class Welder {
  public:
-  void add(const aiMesh& mesh) {
+  void add(const aiMesh& mesh, const aiMatrix4x4& placing) {
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices != 3) continue;  // lines and points of an OBJ file
@@ -90,7 +91,7 @@ class Welder {
       for (int k = 0; k < 3; ++k) {
         if (face.mIndices[k] >= mesh.mNumVertices)
           throw std::runtime_error("a face names a vertex that does not exist");
-        triangle[k] = vertex(mesh.mVertices[face.mIndices[k]]);
+        triangle[k] = vertex(placing * mesh.mVertices[face.mIndices[k]]);
       }
       triangles.push_back(triangle);
     }
@@ -110,11 +111,30 @@ class Welder {
   std::unordered_map<Point, std::int32_t, PointHash> known_;
 };
 
-/// With a wrong extension assimp would go through all its formats; only the one asked for stays.
+/// The meshes of a node and those below it, where glTF's nodes put them. A mesh with a skin stays where it is: its
+/// bones would move it, at rest back to there.
+void add_nodes(Welder& welder, const aiScene& scene, const aiNode& node, const aiMatrix4x4& above) {
+  const aiMatrix4x4 placing = above * node.mTransformation;
+  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
+    welder.add(mesh, mesh.HasBones() ? aiMatrix4x4() : placing);
+  }
+  for (unsigned k = 0; k < node.mNumChildren; ++k) add_nodes(welder, scene, *node.mChildren[k], placing);
+}
+
+FacesInFile check(std::string& bytes, const std::string& extension) {
+  if (extension == "obj") return check_obj(bytes);
+  if (extension == "stl") return check_stl(bytes);
+  if (extension == "ply") return check_ply(bytes);
+  return check_glb(bytes);
+}
+
+/// With a wrong extension assimp would go through all its formats; only those of the one asked for stay (two for glTF).
 void keep_only(Assimp::Importer& importer, const std::string& extension) {
-  const auto* wanted = importer.GetImporter(extension.c_str());
-  for (std::size_t i = importer.GetImporterCount(); i-- > 0;)
-    if (auto* other = importer.GetImporter(i); other != wanted) importer.UnregisterLoader(other);
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    const std::string all = std::string(" ") + importer.GetImporterInfo(i)->mFileExtensions + " ";
+    if (all.find(" " + extension + " ") == std::string::npos) importer.UnregisterLoader(importer.GetImporter(i));
+  }
 }
 
 template <class T> void append(std::string& bytes, const std::vector<T>& values) {
@@ -122,15 +142,14 @@ template <class T> void append(std::string& bytes, const std::vector<T>& values)
 }
 
 std::string parse(std::string& bytes, const std::string& extension) {
-  const FacesInFile expected =
-      extension == "obj" ? check_obj(bytes) : (extension == "stl" ? check_stl(bytes) : check_ply(bytes));
+  const FacesInFile expected = check(bytes, extension);
   Assimp::Importer importer;
   keep_only(importer, extension);
   const aiScene* scene =
       importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, extension.c_str());
   if (!scene) throw std::runtime_error(std::string(importer.GetErrorString()).substr(0, 200));
   Welder welder;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) welder.add(*scene->mMeshes[m]);
+  add_nodes(welder, *scene, *scene->mRootNode, aiMatrix4x4());
   const std::size_t got = welder.triangles.size();
   if (got == 0 || (expected.only_triangles && got != expected.faces))
     throw std::runtime_error("only " + std::to_string(got) + " of " + std::to_string(expected.faces) +

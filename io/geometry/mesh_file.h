@@ -1,5 +1,6 @@
-// Triangle meshes from OBJ, STL (text and binary) and PLY files. assimp does the reading in a short-lived child process
-// with memory and time limits, so that a hostile file ends in one clear line; what comes back is validated here.
+// Triangle meshes from OBJ, STL (text and binary), PLY and binary glTF files. assimp does the reading in a short-lived
+// child process with memory and time limits, so that a hostile file ends in one clear line; what comes back is
+// validated here.
 #pragma once
 
 #include <filesystem>

@@ -65,11 +65,12 @@ Test test_of_closed(const Scene& scene, const Boundary& boundary, double spacing
 std::vector<Test> tests_of(const Scene& scene, double spacing) {
   std::vector<Test> tests;
   for (const Boundary& boundary : scene.boundaries) {
+    if (boundary.motion && !boundary.motion->key_frames.empty()) continue;  // starts elsewhere; contact knows where
     if (boundary.shape.plane)
       tests.push_back(test_of_plane(*boundary.shape.plane, scene.dimensions));
-    else if (boundary.shape.terrain)
+    else if (boundary.shape.terrain && !boundary.two_sided)
       tests.push_back(test_of_terrain(scene, *boundary.shape.terrain));
-    else
+    else if (!boundary.two_sided)
       tests.push_back(test_of_closed(scene, boundary, spacing));
   }
   return tests;
@@ -93,20 +94,26 @@ void require_in_domain(const Scene& scene, const Start& start) {
 
 }  // namespace
 
-template <int Dim> void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
-  require_in_domain(scene, start);
-  if (contact.empty()) return;
+template <int Dim>
+std::size_t count_inside_walls(const Scene& scene, const Start& start, const Contact<Dim>& contact, Place3* first) {
   const double nearest = 0.01 * start.spacing;  // to a wall, m; contact moves those in front of it out to their radius
   const std::vector<Test> tests = tests_of(scene, start.spacing);
   std::size_t inside = 0;
-  Place3 first{};
   for (const Place3& x : start.position) {
     Point<Dim> point;
     for (int d = 0; d < Dim; ++d) point[d] = x[d];
     const bool wrong = std::any_of(tests.begin(), tests.end(), [&](const Test& t) { return t(x); }) ||
                        (contact.may_touch(point, 0) && contact.signed_distance(point, start.spacing) < nearest);
-    if (wrong && inside++ == 0) first = x;
+    if (wrong && inside++ == 0 && first) *first = x;
   }
+  return inside;
+}
+
+template <int Dim> void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
+  require_in_domain(scene, start);
+  if (contact.empty()) return;
+  Place3 first{};
+  const std::size_t inside = count_inside_walls(scene, start, contact, &first);
   if (inside > 0)
     throw Error(
         ExitCode::geometry,
@@ -115,6 +122,8 @@ template <int Dim> void require_no_overlap(const Scene& scene, const Start& star
                     scene.file, inside, start.position.size(), first[0], first[1], first[2], start.spacing / 2));
 }
 
+template std::size_t count_inside_walls(const Scene&, const Start&, const Contact<2>&, Place3*);
+template std::size_t count_inside_walls(const Scene&, const Start&, const Contact<3>&, Place3*);
 template void require_no_overlap(const Scene&, const Start&, const Contact<2>&);
 template void require_no_overlap(const Scene&, const Start&, const Contact<3>&);
 

@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char* kind = "frame";
 constexpr int format_version = 1;
+constexpr const char* bodies_path = "VTKHDF/FieldData/bodies";
 constexpr std::uint8_t poly_vertex = 2;  // VTK's name of a cell that is a heap of points
 
 std::string frame_name(int number) { return fmt::format("frames/{:06}.hdf", number); }
@@ -89,6 +90,31 @@ void write_field_data(Hdf5File& file, const Snapshot& snapshot) {
   describe(file, group + "dimensions", "1", "2 or 3");
 }
 
+/// Rows of centre and turn (row by row), a body each; none where nothing moves.
+void write_bodies(Hdf5File& file, const Snapshot& snapshot) {
+  if (snapshot.bodies.empty()) return;
+  std::vector<double> numbers;
+  for (const SnapshotBody& body : snapshot.bodies) {
+    numbers.insert(numbers.end(), body.centre.begin(), body.centre.end());
+    numbers.insert(numbers.end(), body.turn.begin(), body.turn.end());
+  }
+  file.write(bodies_path, {NumberType::f64, {snapshot.bodies.size(), 12}}, NumberType::f64, numbers.data());
+  describe(file, bodies_path, "m, 1", "centre and turn of each body: x = centre + turn x', x' in bodies/N.obj");
+}
+
+std::vector<SnapshotBody> read_bodies(const Hdf5File& file) {
+  std::vector<SnapshotBody> bodies;
+  if (!file.has(bodies_path)) return bodies;
+  const std::vector<double> numbers = file.read_doubles(bodies_path);
+  if (numbers.size() % 12 != 0) file.fail(std::string("'") + bodies_path + "' has not 12 numbers a body");
+  for (std::size_t k = 0; k < numbers.size(); k += 12) {
+    SnapshotBody& body = bodies.emplace_back();
+    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(k), 3, body.centre.begin());
+    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(k) + 3, 9, body.turn.begin());
+  }
+  return bodies;
+}
+
 void write_grid(const fs::path& path, const Snapshot& snapshot) {
   Hdf5File file = Hdf5File::create(path, ExitCode::files, seal_bytes);
   file.make_group("VTKHDF");
@@ -101,6 +127,7 @@ void write_grid(const fs::path& path, const Snapshot& snapshot) {
   describe(file, "VTKHDF/Points", "m", "position");
   write_point_data(file, snapshot);
   write_field_data(file, snapshot);
+  write_bodies(file, snapshot);
   file.close();
 }
 
@@ -219,6 +246,7 @@ Snapshot read_frame(const fs::path& path) {
   snapshot.step = read_integer(file, "VTKHDF/FieldData/step");
   snapshot.spacing = read_double(file, "VTKHDF/FieldData/spacing");
   snapshot.dimensions = static_cast<int>(read_integer(file, "VTKHDF/FieldData/dimensions"));
+  snapshot.bodies = read_bodies(file);
   return snapshot;
 }
 

@@ -6,7 +6,11 @@
 #include "core/diagnostics.h"
 #include "core/step.h"
 #include "io/geometry/assemble.h"
+#include "io/geometry/bodies.h"
+#include "io/geometry/leak.h"
+#include "io/geometry/mesh_defects.h"
 #include "io/geometry/mesh_file.h"
+#include "io/geometry/vents.h"
 #include "io/program/commands.h"
 #include "io/program/progress.h"
 #include "io/scene/scene_file.h"
@@ -15,17 +19,32 @@ namespace molten {
 
 namespace {
 
-void print_mesh(const Scene& scene, const Shape& shape) {
-  if (!shape.mesh) return;
-  const TriangleMesh mesh = read_mesh(locate(scene, shape.mesh->path));
+void print_defects(const TriangleMesh& mesh) {
+  for (const Defect& d : find_defects(mesh))
+    fmt::print("                  {} at ({:.6g}, {:.6g}, {:.6g}) m: {}\n", d.what, d.place[0], d.place[1], d.place[2],
+               d.cure);
+}
+
+/// Places are those in the scene.
+void print_mesh(const Scene& scene, const MeshFile& file) {
+  const TriangleMesh mesh = placed_mesh(scene, file);
   const MeshReport r = inspect(mesh);
   fmt::print(
       "mesh              {}: {} vertices, {} triangles, {} open edges, {} flipped edges, {} degenerate triangles\n",
-      shape.mesh->path, mesh.vertices.size(), mesh.triangles.size(), r.open_edges, r.flipped_edges,
-      r.degenerate_triangles);
-  if (r.open_edges + r.flipped_edges > 0)
-    fmt::print("                  first defect near ({:.6g}, {:.6g}, {:.6g}) in the file's coordinates\n",
-               r.first_defect[0], r.first_defect[1], r.first_defect[2]);
+      file.path, mesh.vertices.size(), mesh.triangles.size(), r.open_edges, r.flipped_edges, r.degenerate_triangles);
+  print_defects(mesh);
+}
+
+template <int Dim> void print_leak(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
+  const auto leak = find_leak<Dim>(scene, start, build_walls<Dim>(scene, start.spacing), contact);
+  if (!leak) return;
+  const auto text = [](const Point<Dim>& x) {
+    return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x[0], x[1], Dim == 3 ? x[Dim - 1] : 0.0);
+  };
+  fmt::print(
+      "leak              fluid can get out of the walls at {}, the way is narrowest near {}: close the hole, or "
+      "give an [[outflow]] if it is meant\n",
+      text(leak->exit), text(leak->narrowest));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -36,9 +55,11 @@ std::string joined(const std::vector<std::string>& words) {
 
 template <int Dim, class Real> void print_run(const Scene& scene, const Features& features, const Start& start) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
-  Contact<Dim> contact = build_contact(scene, p);
-  require_no_overlap(scene, start, contact);
-  State<Dim, Real> s = make_state<Dim, Real>(features, p, std::move(contact), start);
+  Surroundings<Dim> around = build_surroundings(scene, start, p);
+  require_no_overlap(scene, start, around.contact);
+  require_open_vents(scene, start, around.contact);
+  print_leak(scene, start, around.contact);
+  State<Dim, Real> s = make_state<Dim, Real>(features, p, std::move(around), start);
   // A few steps tell the time step, its limit and the speed of this machine.
   step(s);
   const auto begun = std::chrono::steady_clock::now();
@@ -48,7 +69,7 @@ template <int Dim, class Real> void print_run(const Scene& scene, const Features
   const double steps = scene.run.end_time / s.clock.dt;
   const double frame =
       static_cast<double>(start.position.size()) * 4 * (8 + static_cast<double>(available_fields(features).size()) + 2);
-  fmt::print("particles         {} (mass {:.4g} kg each, spacing {:.4g} m)\n", start.position.size(), p.particle_mass,
+  fmt::print("particles         {} (mass {:.4g} kg each, spacing {:.4g} m)\n", s.particles.count(), p.particle_mass,
              p.spacing);
   fmt::print("smoothing length  {:.4g} m, support radius {:.4g} m, {:.1f} neighbours on average\n", p.smoothing_length,
              p.support_radius, static_cast<double>(count_pairs(s)) / static_cast<double>(s.particles.count()));
@@ -69,8 +90,12 @@ template <int Dim, class Real> void print_run(const Scene& scene, const Features
 ExitCode check_scene(const Scene& scene) {
   const Features features = features_of(scene);
   require_fields(features, scene.output.fields);
-  for (const Body& body : scene.fluid.bodies) print_mesh(scene, body.shape);
-  for (const Boundary& boundary : scene.boundaries) print_mesh(scene, boundary.shape);
+  for (const Body& body : scene.fluid.bodies)
+    if (body.shape.mesh) print_mesh(scene, *body.shape.mesh);
+  for (const Boundary& boundary : scene.boundaries)
+    if (boundary.shape.mesh) print_mesh(scene, *boundary.shape.mesh);
+  for (const Vent& vent : scene.vents)
+    if (vent.mesh) print_mesh(scene, *vent.mesh);
   const Start start = fill_bodies(scene, features);
   fmt::print("scene             {}{}\n", scene.file, scene.title.empty() ? "" : ": " + scene.title);
   fmt::print("features          {}\n", joined(features.names()));

@@ -77,7 +77,7 @@ ExitCode show_info(const fs::path& file) {
     print_frame(file);
   } else if (has_extension(file, {".h5"})) {
     print_checkpoint(file);
-  } else if (has_extension(file, {".obj", ".stl", ".ply"})) {
+  } else if (has_extension(file, {".obj", ".stl", ".ply", ".glb"})) {
     const TriangleMesh mesh = read_mesh(file);
     const MeshReport r = inspect(mesh);
     fmt::print(
@@ -86,7 +86,7 @@ ExitCode show_info(const fs::path& file) {
         r.degenerate_triangles);
   } else {
     throw Error(ExitCode::usage,
-                file.string() + ": not a run folder, frame (.hdf), checkpoint (.h5) or mesh (.obj, .stl, .ply)");
+                file.string() + ": not a run folder, frame (.hdf), checkpoint (.h5) or mesh (.obj, .stl, .ply, .glb)");
   }
   return ExitCode::done;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/geometry/bodies.h"
 #include "io/geometry/mesh_file.h"
 #include "io/hdf5/frames.h"
 #include "io/picture/camera.h"
@@ -76,6 +77,26 @@ std::optional<std::array<double, 2>> common_range(const std::vector<Snapshot>& s
   return common;
 }
 
+std::vector<TriangleMesh> read_bodies(const fs::path& run) {
+  std::vector<TriangleMesh> bodies;
+  while (true) {
+    const fs::path file = run / "bodies" / fmt::format("{}.obj", bodies.size());
+    if (!fs::exists(file)) return bodies;
+    bodies.push_back(read_mesh(file));
+  }
+}
+
+/// The fixed walls, and the bodies where they are in the frame.
+TriangleMesh with_bodies(TriangleMesh walls, const std::vector<TriangleMesh>& bodies, const Snapshot& shot) {
+  for (std::size_t k = 0; k < std::min(bodies.size(), shot.bodies.size()); ++k) {
+    const TriangleMesh body = placed(bodies[k], shot.bodies[k]);
+    const auto first = static_cast<std::int32_t>(walls.vertices.size());
+    walls.vertices.insert(walls.vertices.end(), body.vertices.begin(), body.vertices.end());
+    for (const auto& t : body.triangles) walls.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  return walls;
+}
+
 }  // namespace
 
 ExitCode render_run(const RenderChoice& choice) {
@@ -90,13 +111,15 @@ ExitCode render_run(const RenderChoice& choice) {
   if (error)
     throw Error(ExitCode::files, folder.string() + ": cannot create the folder for the pictures: " + error.message());
 
+  const std::vector<TriangleMesh> bodies =
+      choice.picture.boundaries ? read_bodies(choice.run) : std::vector<TriangleMesh>();
   std::vector<Snapshot> shots;
   for (const int k : chosen) shots.push_back(read_frame(frames[k].file));
-  PictureOptions options = picture::with_fixed_view(choice.picture, shots, boundary);
+  PictureOptions options = picture::with_fixed_view(choice.picture, shots, with_bodies(boundary, bodies, shots[0]));
   if (!options.range) options.range = common_range(shots, options.field);
   for (std::size_t k = 0; k < shots.size(); ++k) {
     const fs::path file = folder / fmt::format("{:06}.png", chosen[k]);
-    write_png(draw(shots[k], boundary, options), file);
+    write_png(draw(shots[k], with_bodies(boundary, bodies, shots[k]), options), file);
     fmt::print("{}\n", file.string());
   }
   return ExitCode::done;

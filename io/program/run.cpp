@@ -11,7 +11,9 @@
 #include "core/diagnostics.h"
 #include "core/step.h"
 #include "io/geometry/assemble.h"
+#include "io/geometry/bodies.h"
 #include "io/geometry/obj_file.h"
+#include "io/geometry/vents.h"
 #include "io/hdf5/checkpoint.h"
 #include "io/hdf5/frames.h"
 #include "io/program/progress.h"
@@ -61,6 +63,8 @@ template <int Dim, class Real> class Runner {
     fresh_ = false;
   }
 
+  std::size_t particles() const { return state_.particles.count(); }
+
   ExitCode run() {
     begin();
     ExitCode code = ExitCode::done;
@@ -82,7 +86,7 @@ template <int Dim, class Real> class Runner {
 
  private:
   void begin() {
-    series_.emplace(folder_ / "series.csv", fresh_ ? 0 : ledger_.rows, state_.features);
+    series_.emplace(folder_ / "series.csv", fresh_ ? 0 : ledger_.rows, state_.features, state_.bodies.count());
     if (fresh_) {
       const Diagnostics d = diagnose(state_);
       ledger_.initial_energy = d.kinetic_energy + d.potential_energy;
@@ -227,9 +231,10 @@ template <int Dim, class Real>
 Runner<Dim, Real> prepare_run(const Scene& scene, const std::filesystem::path& folder, const Features& features,
                               const Start& start) {
   const Parameters<Dim> parameters = parameters_of<Dim>(scene, start);
-  Contact<Dim> contact = build_contact(scene, parameters);
-  require_no_overlap(scene, start, contact);
-  return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(contact), start),
+  Surroundings<Dim> around = build_surroundings(scene, start, parameters);
+  require_no_overlap(scene, start, around.contact);
+  require_open_vents(scene, start, around.contact);
+  return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(around), start),
                            fingerprint(scene, start));
 }
 
@@ -250,7 +255,7 @@ void make_folder(const std::filesystem::path& folder, bool overwrite) {
                                      "`, choose another folder with -o, or replace it with --overwrite");
   if (holds_run)
     for (const char* name : {"frames", "checkpoints", "frames.hdf.series", "series.csv", "summary.json",
-                             "manifest.json", "scene.toml", "walls.obj", "pictures"})
+                             "manifest.json", "scene.toml", "walls.obj", "bodies", "pictures"})
       fs::remove_all(folder / name, error);
   fs::create_directories(folder, error);
   if (error) throw Error(ExitCode::files, folder.string() + ": cannot create the output folder: " + error.message());
@@ -263,6 +268,11 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary);
   out << text;
   if (!out.flush()) throw Error(ExitCode::files, file.string() + ": cannot write; check the disk");
+}
+
+void write_bodies(const std::filesystem::path& folder, const std::vector<TriangleMesh>& bodies) {
+  if (!bodies.empty()) std::filesystem::create_directories(folder);
+  for (std::size_t k = 0; k < bodies.size(); ++k) write_obj(folder / fmt::format("{}.obj", k), bodies[k]);
 }
 
 void set_threads(int threads) {
@@ -281,9 +291,10 @@ ExitCode run_scene(const Scene& scene, const RunOptions& options) {
     make_folder(options.folder, options.overwrite);
     write_text(options.folder / "scene.toml", scene.text);
     write_obj(options.folder / "walls.obj", picture_of_walls(scene, start));
+    write_bodies(options.folder / "bodies", pictures_of_bodies(scene, start));
     write_manifest(options.folder, scene, features, fingerprint(scene, start));
     fmt::print(stderr, "{}: {} particles, spacing {:.4g} m, {}-D, {} precision, {} threads, into {}\n",
-               scene.title.empty() ? scene.file : scene.title, start.position.size(), start.spacing, Dim,
+               scene.title.empty() ? scene.file : scene.title, runner.particles(), start.spacing, Dim,
                sizeof(Real) == 4 ? "single" : "double", omp_get_max_threads(), options.folder.string());
     catch_stop_signals();
     return runner.run();

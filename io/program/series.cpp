@@ -12,13 +12,14 @@ namespace {
 
 bool bounds_energy(const Features& f) { return f.integrator == IntegratorKind::energy_bounded_euler; }
 
-std::string header_of(const Features& f) {
+std::string header_of(const Features& f, std::size_t bodies) {
   std::string header =
       "time_s,step,dt_s,limit,particles,kinetic_energy_J,potential_energy_J,heat_kgK,momentum_x_kgm/s,momentum_y_kgm/s,"
       "momentum_z_kgm/s,lower_x_m,lower_y_m,lower_z_m,upper_x_m,upper_y_m,upper_z_m,max_speed_m/s,max_compression";
   if (f.internal_energy) header += ",internal_energy_J";
   if (bounds_energy(f)) header += ",least_energy_share,mean_energy_share,largest_energy_share";
   if (f.sleep) header += ",asleep,energy_taken_by_sleep_J";
+  for (std::size_t k = 0; k < bodies; ++k) header += fmt::format(",body{0}_x_m,body{0}_y_m,body{0}_z_m", k);
   return header;
 }
 
@@ -33,13 +34,13 @@ std::vector<std::string> first_rows(const std::filesystem::path& file, std::int6
 
 }  // namespace
 
-Series::Series(const std::filesystem::path& file, std::int64_t keep, const Features& features)
+Series::Series(const std::filesystem::path& file, std::int64_t keep, const Features& features, std::size_t bodies)
     : file_(file), features_(features) {
   const std::vector<std::string> kept = first_rows(file, keep);
   const std::filesystem::path part = file.string() + ".tmp";
   {
     std::ofstream fresh(part, std::ios::trunc);
-    fresh << header_of(features) << '\n';
+    fresh << header_of(features, bodies) << '\n';
     for (const std::string& row : kept) fresh << row << '\n';
     if (!fresh.flush())
       throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
@@ -59,6 +60,7 @@ void Series::add(const Clock& c, const Diagnostics& d) {
   if (bounds_energy(features_))
     out_ << fmt::format(",{:.6g},{:.6g},{:.6g}", d.least_energy_share, d.mean_energy_share, d.largest_energy_share);
   if (features_.sleep) out_ << fmt::format(",{},{:.9g}", d.asleep, d.energy_taken_by_sleep);
+  for (const auto& x : d.bodies) out_ << fmt::format(",{:.9g},{:.9g},{:.9g}", x[0], x[1], x[2]);
   out_ << '\n';
   if (!out_.flush()) throw Error(ExitCode::files, file_.string() + ": cannot write; check the disk");
 }

@@ -10,8 +10,8 @@ namespace molten {
 
 class Series {
  public:
-  /// Opens the file with its first `keep` rows; a resume makes the others again.
-  Series(const std::filesystem::path& file, std::int64_t keep, const Features& features);
+  /// Opens the file with its first `keep` rows; a resume makes the others again. `bodies`: how many move.
+  Series(const std::filesystem::path& file, std::int64_t keep, const Features& features, std::size_t bodies);
   /// Throws Error(files) when the disk is full.
   void add(const Clock& clock, const Diagnostics& d);
 

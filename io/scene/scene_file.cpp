@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/features.h"
+#include "io/scene/scene_motion.h"
 #include "io/scene/scene_sections.h"
 #include "io/scene/scene_shapes.h"
 
@@ -77,16 +78,19 @@ void read_ground(const TomlReader& keys, Boundary& boundary) {
   boundary.ground = layer;
 }
 
-/// What only walls with support do.
-void require_support(const TomlReader& keys, const Boundary& boundary, const Scene& scene) {
-  for (const std::string_view key : {"velocity", "temperature"})
-    if (keys.has(key) && !scene.numerics.wall_support)
-      keys.fail(key, "has no effect without wall support; add numerics.wall_support = true");
+/// What walls do with support alone, and what only without it.
+void check_support(const TomlReader& keys, const Boundary& boundary, const Scene& scene) {
+  if (boundary.temperature && !scene.numerics.wall_support)
+    keys.fail("temperature", "has no effect without wall support; add numerics.wall_support = true");
   if (boundary.temperature && !scene.fluid.heat) keys.fail("temperature", "needs heat; add [fluid.heat]");
+  for (const std::string_view key : {"motion", "body"})
+    if (keys.has(key) && scene.numerics.wall_support)
+      keys.fail(key, "is for walls without support; leave it or numerics.wall_support out");
 }
 
 TomlReader::Keys boundary_keys() {
-  return with_shape_keys({"inside", "slip", "restitution", "velocity", "temperature", "ground"});
+  return with_shape_keys({"inside", "two_sided", "slip", "restitution", "friction", "yield_stress", "velocity",
+                          "temperature", "ground", "motion", "body"});
 }
 
 Boundary read_boundary(const TomlReader& keys, int dimensions) {
@@ -96,11 +100,24 @@ Boundary read_boundary(const TomlReader& keys, int dimensions) {
   if (keys.has("inside") && (boundary.shape.plane || boundary.shape.terrain)) {
     keys.fail("inside", "is for closed shapes; the fluid is on the side of the normal here");
   }
+  keys.flag("two_sided", boundary.two_sided);
+  if (keys.has("two_sided") && boundary.shape.plane) {
+    keys.fail("two_sided", "is for surfaces that end; give two planes back to back");
+  }
   keys.number("slip", boundary.slip, Range::fraction());
   keys.number("restitution", boundary.restitution, Range::fraction());
+  keys.number("friction", boundary.friction, Range::not_negative(""));
+  keys.number("yield_stress", boundary.yield_stress, Range::not_negative("Pa"));
+  if (keys.has("slip") && (boundary.friction || boundary.yield_stress)) {
+    keys.fail("slip", "stands beside friction or yield_stress, which say how it slips; keep one of them");
+  }
   keys.numbers("velocity", std::span(boundary.velocity).first(static_cast<std::size_t>(dimensions)), Range::any("m/s"));
   keys.number("temperature", boundary.temperature, Range::any("the scene's temperature unit"));
   read_ground(keys, boundary);
+  read_motion(keys, dimensions, boundary);
+  if (keys.has("velocity") && (boundary.motion || boundary.body)) {
+    keys.fail("velocity", "is for walls that stay in place; give it as motion.velocity or body.velocity");
+  }
   return boundary;
 }
 
@@ -185,7 +202,8 @@ void note_places(const TomlDocument& document, const toml::node& node, const std
 
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
   const TomlDocument document = parse_toml(text, file, overrides);
-  const TomlReader root(document, document.root, "", {"scene", "fluid", "boundary", "run", "output", "numerics"});
+  const TomlReader root(document, document.root, "",
+                        {"scene", "fluid", "boundary", "vent", "outflow", "run", "output", "numerics"});
   Scene scene;
   scene.file = file;
   scene.text = document.text;
@@ -194,8 +212,9 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   scene.numerics = read_numerics(root);
   for (const TomlReader& keys : root.tables("boundary", boundary_keys())) {
     scene.boundaries.push_back(read_boundary(keys, scene.dimensions));
-    require_support(keys, scene.boundaries.back(), scene);
+    check_support(keys, scene.boundaries.back(), scene);
   }
+  read_vents(root, scene);
   scene.run = read_run(root);
   scene.output = read_output(root);
   note_places(document, document.root, "", scene);

@@ -25,9 +25,13 @@ void read_velocity(const TomlReader& keys, int dimensions, Body& body) {
   keys.numbers("velocity", std::span(body.velocity).first(static_cast<std::size_t>(dimensions)), Range::any("m/s"));
 }
 
-/// Either [fluid] itself has the shape, or its [[fluid.body]] tables have one each.
-std::vector<Body> read_bodies(const TomlReader& fluid, int dimensions) {
+/// Either [fluid] itself has the shape, or its [[fluid.body]] tables have one each; with vents there need be none.
+std::vector<Body> read_bodies(const TomlReader& fluid, int dimensions, bool has_vents) {
   std::vector<Body> bodies;
+  if (has_vents && !has_shape(fluid) && !fluid.has("body")) {
+    fluid.require("spacing", "give it in m: without a shape the fluid is what the vents let in");
+    return bodies;
+  }
   if (!fluid.has("body")) {
     Body& body = bodies.emplace_back();
     body.shape = read_shape(fluid, dimensions, ShapeUse::fluid);
@@ -212,12 +216,12 @@ Fluid read_fluid(const TomlReader& root, int dimensions) {
                                                                 "hydrostatic", "rheology", "heat"}));
   Fluid fluid;
   fluid.place = keys.place();
-  fluid.bodies = read_bodies(keys, dimensions);
+  fluid.bodies = read_bodies(keys, dimensions, root.has("vent"));
   read_amount(keys, fluid);
   keys.number("density", fluid.density, Range::positive("kg/m³"));
   keys.flag("hydrostatic", fluid.hydrostatic);
   fluid.rheology = read_rheology(keys);
-  bool all_have_temperature = true;
+  bool all_have_temperature = true;  // without bodies, the vents have theirs
   for (const Body& body : fluid.bodies) all_have_temperature = all_have_temperature && body.temperature.has_value();
   fluid.heat = read_heat(keys, all_have_temperature);
   return fluid;

@@ -214,6 +214,23 @@ bool TomlReader::points(std::string_view key, std::vector<std::array<double, 2>>
   return true;
 }
 
+bool TomlReader::rows(std::string_view key, std::vector<std::vector<double>>& rows,
+                      const std::vector<std::size_t>& lengths, std::string_view form) const {
+  const toml::node* found = node(key);
+  if (found == nullptr) return false;
+  const toml::array* array = found->as_array();
+  if (array == nullptr) fail(key, fmt::format("is {}; give rows {}", type_name(*found), form));
+  rows.clear();
+  for (const toml::node& one : *array) {
+    const toml::array* row = one.as_array();
+    if (row == nullptr || std::find(lengths.begin(), lengths.end(), row->size()) == lengths.end())
+      fail(key, fmt::format("row {} has another form; give {}", rows.size(), form));
+    auto& numbers = rows.emplace_back();
+    for (const toml::node& number : *row) numbers.push_back(checked_number(key, number, Range::any("")));
+  }
+  return true;
+}
+
 std::optional<std::size_t> TomlReader::choice_index(std::string_view key, const Keys& names) const {
   std::string word;
   if (!text(key, word)) return std::nullopt;

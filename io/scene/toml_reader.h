@@ -50,6 +50,9 @@ class TomlReader {
   bool text(std::string_view key, std::string& value) const;
   bool texts(std::string_view key, std::vector<std::string>& values) const;
   bool points(std::string_view key, std::vector<std::array<double, 2>>& values) const;
+  /// An array of rows of numbers, each of one of the `lengths`; `form` says in messages what a row is.
+  bool rows(std::string_view key, std::vector<std::vector<double>>& rows, const std::vector<std::size_t>& lengths,
+            std::string_view form) const;
 
   template <class T>
   bool choice(std::string_view key, T& value, const std::vector<std::pair<std::string_view, T>>& choices) const {

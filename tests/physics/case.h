@@ -57,7 +57,7 @@ inline void make_periodic(Scene& scene, const Triple& size) {
 
 template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Start& start) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
-  return make_state<Dim, Real>(features_of(scene), p, build_contact(scene, p), start);
+  return make_state<Dim, Real>(features_of(scene), p, build_surroundings(scene, start, p), start);
 }
 
 /// f(slot) for every particle.

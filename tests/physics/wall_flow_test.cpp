@@ -88,6 +88,27 @@ TEST(WallFlow, Couette) {
   EXPECT_LT((error_of<float>({.belt = 1, .smoothing_ratio = 1.3}, linear)), 0.005);
 }
 
+TEST(WallFlow, ABeltCountsAlongItselfAlone) {
+  const auto accelerations = [](const Point<2>& belt) {
+    Channel c{.rows = 8};
+    std::vector<Wall<2>> walls = walls_of(c);
+    walls[1].skin.velocity = belt;
+    const Start start = lattice(2, {8, c.rows, 0}, 1.0 / c.rows);
+    const Scene scene = channel_scene(c, 1);
+    const auto p = parameters_of<2>(scene, start);
+    auto s = make_state<2, double>(features_of(scene), p, Contact<2>(walls, p.contact_radius, p.support_radius), start);
+    find_rates(s);
+    std::vector<double> all;
+    for_each_particle(s, [&](std::size_t slot) {
+      for (int d = 0; d < 2; ++d) all.push_back(s.particles[acceleration][d][slot]);
+      all.push_back(s.particles[compression_rate][0][slot]);
+    });
+    return all;
+  };
+  EXPECT_EQ(accelerations({1, 0}), accelerations({1, 5}));
+  EXPECT_NE(accelerations({1, 0}), accelerations({2, 0}));
+}
+
 TEST(WallFlow, Conduction) {
   EXPECT_LT((error_of<double>({.rows = 16, .heated = true}, linear)), 0.005);
   EXPECT_LT((error_of<float>({.rows = 16, .heated = true, .smoothing_ratio = 1.3}, linear)), 0.005);

@@ -1,0 +1,186 @@
+#include "core/boundary/surface_search.h"
+
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "core/error.h"
+
+namespace molten {
+namespace {
+
+// The rule that picks grid or tree looks at the walls and the path alone, so runs repeat. bench/contact shows the
+// crossover of path lengths.
+constexpr std::size_t huge_mesh = 1000000;  // facets; the grid's lists would take more room than the mesh
+constexpr double crowded_list = 64;         // facets in the mean list: the grid's cells are far larger than the facets
+constexpr double long_path = 0.5;           // cells
+
+}  // namespace
+
+template <int Dim>
+SurfaceSearch<Dim>::SurfaceSearch(const std::vector<Wall<Dim>>& walls, double radius, double skin, double cell,
+                                  SearchMethod method)
+    : surface_(walls), radius_(radius), skin_(skin) {
+  for (std::size_t w = 0; w < walls.size(); ++w)
+    if (walls[w].is_plane)
+      planes_.push_back({walls[w].plane_point, walls[w].plane_normal.normalized(), static_cast<std::int32_t>(w)});
+  tree_alone_ =
+      method == SearchMethod::tree || (method == SearchMethod::by_rule && surface_.facets().size() >= huge_mesh);
+  if (!tree_alone_) grid_ = FacetGrid<Dim>(surface_.facets(), radius + 4 * skin, cell);
+  if (method == SearchMethod::by_rule && grid_.mean_list() > crowded_list) {
+    tree_alone_ = true;
+    grid_ = {};
+  }
+  if (surface_.facets().empty()) tree_alone_ = false;
+  longest_in_grid_ = method == SearchMethod::grid ? HUGE_VAL : long_path * grid_.cell();
+}
+
+template <int Dim> const FacetTree<Dim>& SurfaceSearch<Dim>::tree() const {
+  std::call_once(planted_,
+                 [this] { tree_ = std::make_unique<FacetTree<Dim>>(surface_.facets(), radius_ + 4 * skin_); });
+  return *tree_;
+}
+
+template <int Dim> bool SurfaceSearch<Dim>::is_long(const Point<Dim>& d) const {
+  return !surface_.facets().empty() && d.norm() > longest_in_grid_;
+}
+
+template <int Dim> double SurfaceSearch<Dim>::extent() const {
+  double furthest2 = 0;
+  for (const auto& f : surface_.facets())
+    for (const auto& c : f.corner) furthest2 = std::max(furthest2, c.squaredNorm());
+  return std::sqrt(furthest2);
+}
+
+template <int Dim> bool SurfaceSearch<Dim>::any_within(const Point<Dim>& x, double reach) const {
+  for (const Plane& p : planes_)
+    if (std::abs(p.normal.dot(x - p.point)) <= reach + radius_ + 4 * skin_) return true;
+  if (!tree_alone_) return grid_.any_within(x, reach);
+  bool any = false;
+  tree().near(x, reach, [&](std::int32_t) { return !(any = true); });
+  return any;
+}
+
+// ---- the first contact ----------------------------------------------------------------------------------------------
+
+template <int Dim>
+void SurfaceSearch<Dim>::meet_facet(FirstContact<Dim>& first, std::int32_t facet, const Point<Dim>& x,
+                                    const Point<Dim>& d, double r) const {
+  const Facet<Dim>& f = surface_.facets()[facet];
+  const double height = f.normal.dot(x - f.corner[0]);
+  if (misses_slab(height, -f.normal.dot(d), r)) return;
+  const auto hit = sweep_facet(f, x, d, r);
+  if (!hit) return;
+  // The centre has settled in front of all walls, so a face that holds from behind is the back of a thin plate.
+  if (hit->feature == Feature::face && height < -r / 2) return;
+  FirstContact<Dim> found{hit->t, hit->t, static_cast<std::int64_t>(planes_.size()) + facet, hit->normal,
+                          surface_.wall(facet)};
+  if (hit->feature != Feature::face) {
+    const Crease crease = surface_.crease(facet, hit->feature, hit->index);
+    if (crease != Crease::rim &&
+        hit->normal.dot(surface_.pseudo_normal(facet, hit->feature, hit->index)) < -side_tolerance)
+      return;
+    if (crease == Crease::smooth) {  // the face decides: no bumps at edges inside a flat wall
+      if (!approaches<Dim>(d, f.normal)) return;
+      found.normal = f.normal;
+    }
+    found.key += skin_ / d.norm();  // faces win ties
+  }
+  if (std::tie(found.key, found.rank) < std::tie(first.key, first.rank)) first = found;
+}
+
+template <int Dim>
+void SurfaceSearch<Dim>::meet_planes(FirstContact<Dim>& first, const Point<Dim>& x, const Point<Dim>& d,
+                                     double r) const {
+  for (std::size_t p = 0; p < planes_.size(); ++p) {
+    const auto hit = sweep_plane<Dim>(planes_[p].point, planes_[p].normal, x, d, r);
+    if (hit && hit->t < first.key) first = {hit->t, hit->t, static_cast<std::int64_t>(p), hit->normal, planes_[p].wall};
+  }
+}
+
+template <int Dim>
+FirstContact<Dim> SurfaceSearch<Dim>::first_contact(const Point<Dim>& x, const Point<Dim>& d, double r) const {
+  FirstContact<Dim> first;
+  meet_planes(first, x, d, r);
+  if (tree_alone_ || is_long(d))
+    tree().sweep(x, d, [&](std::int32_t facet) {
+      meet_facet(first, facet, x, d, r);
+      return first.key;
+    });
+  else
+    grid_.walk(x, d, [&](std::span<const std::int32_t> facets, double end) {
+      for (const std::int32_t facet : facets) meet_facet(first, facet, x, d, r);
+      return first.key > end;
+    });
+  return first;
+}
+
+// ---- the nearest ----------------------------------------------------------------------------------------------------
+
+template <int Dim>
+void SurfaceSearch<Dim>::come_near(NearestWall<Dim>& best, std::int32_t facet, const Point<Dim>& x, double limit,
+                                   bool past_rims) const {
+  const Facet<Dim>& f = surface_.facets()[facet];
+  const double height = f.normal.dot(x - f.corner[0]);
+  if (further_than<Dim>(f, x, limit)) return;
+  const auto near = nearest_point(f, x);
+  if (!(near.distance < limit)) return;
+  const Point<Dim> away = x - near.point;
+  const bool rim = surface_.crease(facet, near.feature, near.index) == Crease::rim;
+  const Point<Dim> front = rim ? f.normal : surface_.pseudo_normal(facet, near.feature, near.index);
+  const bool face = near.feature == Feature::face;
+  const bool behind = face ? height < 0 : away.dot(front) < -side_tolerance * near.distance;
+  if (behind && rim && !past_rims) return;
+  NearestWall<Dim> found{near.distance, near.distance, behind, static_cast<std::int64_t>(planes_.size()) + facet,
+                         near.point,    f.normal};
+  if (behind) found.key += skin_;  // of two sides equally near, the front counts
+  if (!face) found.normal = behind || near.distance < skin_ ? front.normalized() : Point<Dim>(away / near.distance);
+  if (std::tie(found.key, found.rank) < std::tie(best.key, best.rank)) best = found;
+}
+
+template <int Dim>
+void SurfaceSearch<Dim>::come_near_planes(NearestWall<Dim>& best, const Point<Dim>& x, double limit) const {
+  for (std::size_t p = 0; p < planes_.size(); ++p) {
+    const Point<Dim>& n = planes_[p].normal;
+    const double height = n.dot(x - planes_[p].point), key = height < 0 ? skin_ - height : height;
+    if (std::abs(height) < limit && key < best.key)
+      best = {key, std::abs(height), height < 0, static_cast<std::int64_t>(p), x - height * n, n};
+  }
+}
+
+template <int Dim> NearestWall<Dim> SurfaceSearch<Dim>::nearest_held(const Point<Dim>& x) const {
+  NearestWall<Dim> best;
+  come_near_planes(best, x, radius_);
+  if (tree_alone_)
+    tree().near(x, 0, [&](std::int32_t facet) {
+      come_near(best, facet, x, radius_, false);
+      return true;
+    });
+  else
+    for (const std::int32_t facet : grid_.near(x)) come_near(best, facet, x, radius_, false);
+  return best;
+}
+
+template <int Dim> NearestWall<Dim> SurfaceSearch<Dim>::nearest_any(const Point<Dim>& x, double limit) const {
+  NearestWall<Dim> best;
+  come_near_planes(best, x, limit);
+  const Point<Dim> reach = Point<Dim>::Constant(limit);
+  if (tree_alone_)
+    tree().near(x, limit, [&](std::int32_t facet) {
+      come_near(best, facet, x, limit, true);
+      return true;
+    });
+  else if (limit < 16 * grid_.cell())
+    grid_.visit_box(x - reach, x + reach, [&](std::span<const std::int32_t> facets) {
+      for (const std::int32_t facet : facets) come_near(best, facet, x, limit, true);
+    });
+  else
+    for (std::size_t f = 0; f < surface_.facets().size(); ++f)
+      come_near(best, static_cast<std::int32_t>(f), x, limit, true);
+  return best;
+}
+
+template class SurfaceSearch<2>;
+template class SurfaceSearch<3>;
+
+}  // namespace molten

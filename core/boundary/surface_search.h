@@ -1,0 +1,80 @@
+// Walls that move together, in their own frame: the first that a moving sphere meets, and the nearest to a point. Two
+// ways to find the facets, which give the same answers to the bit: grid lists for short paths, a tree for long ones,
+// huge meshes and walls that are crowded somewhere in a large space (facet_grid.h, facet_tree.h).
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core/boundary/contact.h"
+#include "core/boundary/facet_grid.h"
+#include "core/boundary/facet_tree.h"
+#include "core/boundary/wall_surface.h"
+
+namespace molten {
+
+/// The first wall met, by the fraction t of the path. `rank` breaks ties: planes, then facets, in the order given.
+template <int Dim> struct FirstContact {
+  double key = HUGE_VAL, t = 0;
+  std::int64_t rank = -1;
+  Point<Dim> normal = Point<Dim>::Zero();
+  std::int32_t wall = 0;
+};
+
+/// The nearest point of a wall; `normal` points to its front side.
+template <int Dim> struct NearestWall {
+  double key = HUGE_VAL, distance = 0;
+  bool behind = false;
+  std::int64_t rank = -1;
+  Point<Dim> point = Point<Dim>::Zero(), normal = Point<Dim>::Zero();
+};
+
+template <int Dim> class SurfaceSearch {
+ public:
+  /// `radius` (m) of the spheres, `skin` (m) the gap that a contact leaves, `cell` (m) of the grid that is wanted.
+  SurfaceSearch(const std::vector<Wall<Dim>>& walls, double radius, double skin, double cell, SearchMethod method);
+
+  bool empty() const { return planes_.empty() && surface_.facets().empty(); }
+  bool has_planes() const { return !planes_.empty(); }
+  const WallSurface<Dim>& surface() const { return surface_; }
+  /// Distance (m) of the furthest corner from the frame's origin.
+  double extent() const;
+
+  /// False only if no wall can be met within `reach` (m) of x beyond the radius.
+  bool any_within(const Point<Dim>& x, double reach) const;
+
+  /// What a sphere of radius r (m), at most that of the construction, meets first on its way from x to x + d.
+  FirstContact<Dim> first_contact(const Point<Dim>& x, const Point<Dim>& d, double r) const;
+
+  /// The nearest wall within a radius that holds a particle at x: behind an open wall's rim nothing holds it.
+  NearestWall<Dim> nearest_held(const Point<Dim>& x) const;
+
+  /// The nearest wall within `limit` (m) of x.
+  NearestWall<Dim> nearest_any(const Point<Dim>& x, double limit) const;
+
+ private:
+  struct Plane {
+    Point<Dim> point, normal;
+    std::int32_t wall;
+  };
+
+  const FacetTree<Dim>& tree() const;
+  bool is_long(const Point<Dim>& d) const;
+  void meet_planes(FirstContact<Dim>& first, const Point<Dim>& x, const Point<Dim>& d, double r) const;
+  void meet_facet(FirstContact<Dim>& first, std::int32_t facet, const Point<Dim>& x, const Point<Dim>& d,
+                  double r) const;
+  void come_near(NearestWall<Dim>& best, std::int32_t facet, const Point<Dim>& x, double limit, bool past_rims) const;
+  void come_near_planes(NearestWall<Dim>& best, const Point<Dim>& x, double limit) const;
+
+  std::vector<Plane> planes_;
+  WallSurface<Dim> surface_;
+  double radius_, skin_;
+  bool tree_alone_ = false;     // no grid
+  double longest_in_grid_ = 0;  // m; longer paths go through the tree
+  FacetGrid<Dim> grid_;
+  mutable std::once_flag planted_;  // the tree grows when it is first wanted
+  mutable std::unique_ptr<FacetTree<Dim>> tree_;
+};
+
+}  // namespace molten

@@ -1,0 +1,147 @@
+#include "io/geometry/vents.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "io/geometry/assemble.h"
+
+namespace molten {
+
+namespace {
+
+template <int Dim> Point<Dim> point_of(const std::array<double, 3>& v) {
+  Point<Dim> p;
+  for (int d = 0; d < Dim; ++d) p[d] = v[d];
+  return p;
+}
+
+std::string name_of(const Scene& scene, const Vent& vent) {
+  return fmt::format("{}:{}: vent", vent.place.file.empty() ? scene.file : vent.place.file, vent.place.line);
+}
+
+/// The lattice points of the plane that fall on the patch, seen along its normal.
+std::vector<Point<3>> offsets_on(const TriangleMesh& mesh, const VentPatch<3>& patch, double spacing) {
+  const auto axes = axes_across(patch.normal);
+  const Point<3>&a = axes[0], &b = axes[1];  // clang 14 lets no lambda capture a structured binding
+  const auto flat = [&](const Vec3& v) { return Vec2((v - patch.centre).dot(a), (v - patch.centre).dot(b)); };
+  const auto turn = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
+  double reach = 0;
+  for (const Vec3& v : mesh.vertices) reach = std::max(reach, flat(v).norm());
+  std::vector<Point<3>> offsets;
+  const int cells = static_cast<int>(reach / spacing) + 1;
+  for (int j = -cells; j <= cells; ++j)
+    for (int i = -cells; i <= cells; ++i) {
+      const Vec2 x(i * spacing, j * spacing);
+      const bool on = std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
+        const Vec2 p = flat(mesh.vertices[t[0]]), q = flat(mesh.vertices[t[1]]), r = flat(mesh.vertices[t[2]]);
+        const double u = turn(q - p, x - p), v = turn(r - q, x - q), w = turn(p - r, x - r);
+        return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+      });
+      if (on) offsets.push_back(x[0] * a + x[1] * b);
+    }
+  if (offsets.empty()) offsets.push_back(Point<3>::Zero());
+  return offsets;
+}
+
+VentPatch<3> patch_of_mesh(const Scene& scene, const Vent& vent, double spacing) {
+  const TriangleMesh mesh = placed_mesh(scene, *vent.mesh);
+  VentPatch<3> patch;
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 &p = mesh.vertices[t[0]], &q = mesh.vertices[t[1]], &r = mesh.vertices[t[2]];
+    const Vec3 twice = (q - p).cross(r - p);
+    patch.normal += twice;
+    patch.centre += twice.norm() * (p + q + r) / 3;
+    area += twice.norm();
+  }
+  if (!(patch.normal.norm() > 0.9 * area))
+    throw Error(ExitCode::geometry, name_of(scene, vent) +
+                                        ".mesh: the patch is not flat, so it has no one direction "
+                                        "to let fluid in; cut it into flatter patches");
+  patch.centre /= area;
+  patch.normal.normalize();
+  patch.offsets = offsets_on(mesh, patch, spacing);
+  return patch;
+}
+
+template <int Dim> VentPatch<Dim> patch_of(const Scene& scene, const Vent& vent, double spacing) {
+  VentPatch<Dim> patch;
+  if (vent.mesh) {
+    if constexpr (Dim == 3) patch = patch_of_mesh(scene, vent, spacing);
+  } else {
+    patch.centre = point_of<Dim>(vent.centre);
+    patch.normal = point_of<Dim>(vent.normal).normalized();
+    patch.offsets = disc_offsets<Dim>(patch.normal, vent.radius, spacing);
+  }
+  patch.table = vent.table;
+  return patch;
+}
+
+template <int Dim> void describe(const Scene& scene, Start& start) {
+  const Vents<Dim> vents = build_vents<Dim>(scene, start, start.spacing);
+  for (std::size_t k = 0; k < vents.count(); ++k) {
+    auto& x = start.vents.emplace_back();
+    for (int d = 0; d < Dim; ++d) x[d] = vents.patch(k).centre[d];
+  }
+  start.vent_speed = vents.fastest();
+}
+
+/// The fluid that waits behind a vent supports what leaves it; a wall there would do so again.
+template <int Dim>
+void require_no_support(const Scene& scene, const Vent& vent, const VentPatch<Dim>& patch, const Contact<Dim>& contact,
+                        double support) {
+  for (const Point<Dim>& offset : patch.offsets)
+    if (contact.may_touch(patch.centre + offset, support))
+      throw Error(ExitCode::geometry,
+                  fmt::format("{}: is within {:.4g} m of a wall, which would support its fluid a second time; move it "
+                              "away or leave numerics.wall_support out",
+                              name_of(scene, vent), support));
+}
+
+}  // namespace
+
+template <int Dim> Vents<Dim> build_vents(const Scene& scene, const Start& start, double support) {
+  const double spacing = std::pow(measure_of_particle(scene, start), 1.0 / Dim);
+  std::vector<VentPatch<Dim>> patches;
+  for (const Vent& vent : scene.vents) patches.push_back(patch_of<Dim>(scene, vent, spacing));
+  return Vents<Dim>(std::move(patches), spacing, support);
+}
+
+void describe_vents(const Scene& scene, Start& start) {
+  if (scene.vents.empty()) return;
+  scene.dimensions == 2 ? describe<2>(scene, start) : describe<3>(scene, start);
+}
+
+template <int Dim> void require_open_vents(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
+  const Vents<Dim> vents = build_vents<Dim>(scene, start, start.spacing);
+  for (std::size_t k = 0; k < vents.count(); ++k) {
+    const VentPatch<Dim>& patch = vents.patch(k);
+    if (scene.numerics.wall_support)
+      require_no_support(scene, scene.vents[k], patch, contact, parameters_of<Dim>(scene, start).support_radius);
+    Start outside;  // where a layer is when it has left
+    outside.spacing = start.spacing;
+    for (const Point<Dim>& offset : patch.offsets) {
+      const Point<Dim> x = patch.centre + 0.51 * start.spacing * patch.normal + offset;
+      auto& at = outside.position.emplace_back();
+      for (int d = 0; d < Dim; ++d) at[d] = x[d];
+    }
+    if (const std::size_t n = count_inside_walls(scene, outside, contact); n > 0)
+      throw Error(
+          ExitCode::geometry,
+          fmt::format("{}: {} of the {} particles that leave it at ({:.6g}, {:.6g}, {:.6g}) m would be inside a "
+                      "wall; move it to the wall's surface, turn its normal into the open, or make it smaller",
+                      name_of(scene, scene.vents[k]), n, patch.offsets.size(), patch.centre[0], patch.centre[1],
+                      Dim == 3 ? patch.centre[Dim - 1] : 0.0));
+  }
+}
+
+template Vents<2> build_vents(const Scene&, const Start&, double);
+template Vents<3> build_vents(const Scene&, const Start&, double);
+template void require_open_vents(const Scene&, const Start&, const Contact<2>&);
+template void require_open_vents(const Scene&, const Start&, const Contact<3>&);
+
+}  // namespace molten
