@@ -59,6 +59,12 @@ const std::string vft =
     "fluid.rheology={ model = \"newtonian\", viscosity = 1, largest_viscosity = 9, vft = { a = 1, b = 2, c = 3 } }";
 const std::string support = "numerics.wall_support=true", summation = "numerics.density=\"summation\"";
 const std::string ground = "boundary.0.ground={ diffusivity = 1, thickness = 1 }";
+const std::string ball = "boundary.0={ sphere = { center = [0, 0, -3], radius = 1 } }";
+const std::string key_frames = "boundary.0.motion={ key_frames = [[0, 0, 0, 0], [1, 0, 1, 0]] }";
+const std::string mouth = "disc = { centre = [2, 0, 1], normal = [1, 0, 0], radius = 0.3 }";
+const std::string vent = "vent=[{ " + mouth + ", rate = 0.01, temperature = 20 }]";
+const std::string vent_by_table = "vent=[{ " + mouth + ", table = [[0, 0.01, 20], [1, 0.02, 20]] }]";
+const std::string outflow = "outflow=[{ plane = { point = [2, 0, 0], normal = [1, 0, 0] } }]";
 
 const std::vector<Change> changes = {
     {"scene.gravity=[0, 0, -9]"},
@@ -93,7 +99,26 @@ const std::vector<Change> changes = {
     {"boundary.0.restitution=0.5"},
     {"boundary.0.plane.point=[0, 0, -1]"},
     {"boundary.0={ sphere = { center = [0, 0, 0], radius = 2.5 }, inside = true }"},
-    {"boundary.0.velocity=[1, 0, 0]", {support}},
+    {"boundary.0.friction=0.5"},
+    {"boundary.0.yield_stress=5"},
+    {"boundary.0.velocity=[1, 0, 0]"},
+    {"boundary.0.two_sided=true", {ball}},
+    {"boundary.0.motion={ velocity = [1, 0, 0] }", {ball}},
+    {"boundary.0.motion.velocity=[0, 1, 0]", {ball, "boundary.0.motion={ velocity = [1, 0, 0] }"}},
+    {"boundary.0.motion.spin=[0, 1, 0]", {ball, "boundary.0.motion={ spin = [1, 0, 0] }"}},
+    {"boundary.0.motion.centre=[0, 1, 0]", {ball, "boundary.0.motion={ spin = [1, 0, 0] }"}},
+    {"boundary.0.motion.key_frames=[[0, 0, 0, 0], [2, 0, 1, 0]]", {ball, key_frames}},
+    {"boundary.0.body={ density = 500 }", {ball}},
+    {"boundary.0.body.density=600", {ball, "boundary.0.body={ density = 500 }"}},
+    {"boundary.0.body.velocity=[1, 0, 0]", {ball, "boundary.0.body={ density = 500 }"}},
+    {"boundary.0.body.spin=[1, 0, 0]", {ball, "boundary.0.body={ density = 500 }"}},
+    {vent},
+    {"vent.0.rate=0.02", {vent}},
+    {"vent.0.temperature=30", {vent}},
+    {"vent.0.disc.radius=0.2", {vent}},
+    {"vent.0.table=[[0, 0.01, 20], [2, 0.02, 20]]", {vent_by_table}},
+    {outflow},
+    {"outflow.0.plane.point=[3, 0, 0]", {outflow}},
     {"boundary.0.temperature=21", {support, "boundary.0.temperature=20"}},
     {"boundary.0.ground.diffusivity=2", {support, "boundary.0.temperature=20", ground}},
     {"boundary.0.ground.thickness=2", {support, "boundary.0.temperature=20", ground}},
@@ -102,7 +127,7 @@ const std::vector<Change> changes = {
     {"numerics.resort=\"each_step\""},
     {"numerics.kernel=\"gaussian\""},
     {"numerics.smoothing_ratio=1.4"},
-    {"numerics.skin=0.3"},
+    {"numerics.skin=0.4"},
     {"numerics.integrator=\"midpoint\""},
     {"numerics.state_equation=\"linear\""},
     {"numerics.gamma=6"},
@@ -188,6 +213,10 @@ TEST(Fingerprint, NoKeyIsForgottenAbove) {
                                                 "fluid.cell_size",
                                                 "fluid.scale",
                                                 "fluid.origin",
+                                                "vent.0.mesh",
+                                                "vent.0.height",
+                                                "vent.0.position",
+                                                "vent.0.rotation",
                                                 "boundary.0.mesh",
                                                 "boundary.0.sphere",
                                                 "boundary.0.box",
@@ -211,6 +240,10 @@ TEST(Fingerprint, NoKeyIsForgottenAbove) {
       {"fluid.heat", {}},
       {"boundary.0", {}},
       {"boundary.0.ground", {support, "boundary.0.temperature=20"}},
+      {"boundary.0.motion", {ball}},
+      {"boundary.0.body", {ball}},
+      {"vent.0", {vent}},
+      {"outflow.0", {outflow}},
       {"numerics", {}},
       {"numerics.xsph", {}},
       {"numerics.density_filter", {}},

@@ -86,7 +86,8 @@ std::string full_scene(int dimensions, const std::string& precision, const std::
            : "plane = { point = [0, 0, 0], normal = [0, 0, 1] }\n[[boundary]]\n"
              "sphere = { center = [0.27, 0.1, 0.0], radius = 0.05 }\nslip = 0.7\nrestitution = 0.2\n";
   const bool two_step = integrator == "leap_frog" || integrator == "symplectic_euler";
-  const bool support = integrator == "symplectic_euler";
+  const bool symplectic = integrator == "symplectic_euler";
+  const bool support = symplectic || more.find("wall_support") != std::string::npos;
   const std::string moving =
       !two_step || support ? ""
       : flat               ? "[[boundary]]\nsphere = { center = [0.36, 0.2], radius = 0.04 }\n"
@@ -130,7 +131,7 @@ integrator = "{}"
 xsph = {{ form = "position", epsilon = 0.3 }}
 {}{})",
                      dimensions, body, flat ? "[0.5, -0.5]" : "[0.5, 0.0, -0.5]", walls, moving, vents, precision,
-                     integrator, more, support ? "wall_support = true\ndensity_diffusion = 0.1\n" : "");
+                     integrator, more, symplectic ? "wall_support = true\ndensity_diffusion = 0.1\n" : "");
 }
 
 /// A scene in a folder of its own, with runs beside it.
