@@ -150,6 +150,7 @@ template <int Dim, class Make> void add_moves(const std::string& name, bool only
 
 int main(int argc, char** argv) {
   using namespace molten::bench;
+  using molten::SearchMethod;
   return run_program(argc, argv, [] {
     add_moves<3>("contact/move/tank/3d/100k", false, [] { return dam_break<3>(100000, true); });
     add_moves<3>("contact/may_touch/tank/3d/100k", true, [] { return dam_break<3>(100000, false); });
