@@ -67,7 +67,8 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
   constexpr bool corrected = true;
   run_rates_pass_at_walls(
       s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
-      ShiftTransport<Real>(f.shifting, rho0), LaminarViscosity<Real, corrected>(f.laminar ? p.viscosity : 0, rho0),
+      ShiftTransport<Real>(f.shifting, rho0), LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
+      MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
       StressForce<Dim, Real>(f.stress, rho0), HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
       DensityDiffusion<Dim, Real>(p.density_diffusion, p.smoothing_length, p.eos, p.gravity),
       XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));

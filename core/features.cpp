@@ -141,7 +141,8 @@ Features features_of(const Scene& scene) {
   f.xsph = scene.numerics.xsph && scene.numerics.xsph->epsilon > 0;
   f.particle_sound_speed = f.artificial_viscosity && scene.numerics.particle_sound_speed;
   f.tensile_correction = scene.numerics.tensile_correction;
-  f.muller_viscosity = f.laminar && scene.numerics.muller_viscosity;
+  f.monaghan_viscosity = f.laminar && scene.numerics.viscosity_form == ViscosityForm::monaghan;
+  f.muller_viscosity = f.laminar && scene.numerics.viscosity_form == ViscosityForm::muller;
   f.half_pressure = scene.numerics.half_pressure;
   f.internal_energy = scene.numerics.internal_energy;
   f.density_sum = scene.numerics.density == DensityForm::summation;
@@ -211,6 +212,7 @@ std::vector<std::string> Features::names() const {
   if (xsph) n.push_back("xsph");
   if (particle_sound_speed) n.push_back("particle-sound-speed");
   if (tensile_correction) n.push_back("tensile-correction");
+  if (monaghan_viscosity) n.push_back("monaghan-viscosity");
   if (muller_viscosity) n.push_back("muller-viscosity");
   if (half_pressure) n.push_back("half-pressure");
   if (internal_energy) n.push_back("internal-energy");

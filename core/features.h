@@ -18,6 +18,7 @@ struct Features {
   bool artificial_viscosity = false;
   bool particle_sound_speed = false;
   bool tensile_correction = false;
+  bool monaghan_viscosity = false;  // forms of a constant viscosity other than Morris'
   bool muller_viscosity = false;
   bool half_pressure = false;
   bool internal_energy = false;
@@ -48,6 +49,8 @@ struct Features {
   bool any_seldom() const {
     return particle_sound_speed || tensile_correction || muller_viscosity || half_pressure || internal_energy;
   }
+
+  bool morris_viscosity() const { return laminar && !monaghan_viscosity && !muller_viscosity; }
 
   FieldSet columns() const;
   /// The passes of one step in their order.

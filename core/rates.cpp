@@ -58,7 +58,8 @@ template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   else if (stress_force.on && conduction.on && !s.features.xsph && !diffusion.on)
     pass(artificial, Always(stress_force), Always(conduction));
   else
-    pass(artificial, LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0), stress_force, conduction,
+    pass(artificial, LaminarViscosity<Real>(s.features.morris_viscosity() ? p.viscosity : 0, rho0),
+         MonaghanViscosity<Dim, Real>(s.features.monaghan_viscosity ? p.viscosity : 0, rho0), stress_force, conduction,
          diffusion, XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
 }
 

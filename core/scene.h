@@ -190,6 +190,7 @@ enum class IntegratorKind {
   runge_kutta_4,
   energy_bounded_euler
 };
+enum class ViscosityForm { morris, monaghan, muller };
 enum class Precision { single, double_ };
 enum class Resort { when_due, each_step };
 
@@ -231,7 +232,7 @@ struct Numerics {
   double artificial_viscosity = 0.1;  // α; 0: no term
   bool particle_sound_speed = false;  // c_i in the artificial viscosity; Tait with γ = 7
   bool tensile_correction = false;
-  bool muller_viscosity = false;  // the form of a constant viscosity; else Morris'
+  ViscosityForm viscosity_form = ViscosityForm::morris;  // of a constant viscosity
   bool internal_energy = false;
   std::optional<Xsph> xsph;
   std::optional<double> stiffness;  // k of the ideal gas, m²/s²; default: the square of the sound speed's default

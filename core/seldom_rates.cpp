@@ -44,14 +44,14 @@ void seldom_pass(State<Dim, Real>& s, const Terms&... terms) {
   const Features& f = s.features;
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
-  const double constant_viscosity = f.laminar ? p.viscosity : 0;
   run_rates_pass(s,
                  WithWork(f.internal_energy, OneOfPressures{f.half_pressure},
                           ArtificialViscosity<Real, true>(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length,
                                                           rho0, f.particle_sound_speed),
                           TensileCorrection<Real>(f.tensile_correction, kernel_at_spacing<Dim, Real>(p)),
-                          LaminarViscosity<Real, corrected>(f.muller_viscosity ? 0 : constant_viscosity, rho0),
-                          MullerViscosity<Dim, Real>(f.muller_viscosity ? constant_viscosity : 0, p.particle_mass, rho0,
+                          LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
+                          MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
+                          MullerViscosity<Dim, Real>(f.muller_viscosity ? p.viscosity : 0, p.particle_mass, rho0,
                                                      p.support_radius),
                           StressForce<Dim, Real>(f.stress, rho0)),
                  HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),

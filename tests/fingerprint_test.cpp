@@ -136,6 +136,7 @@ const std::vector<Change> changes = {
     {"numerics.artificial_viscosity=0.2"},
     {"numerics.particle_sound_speed=true"},
     {"numerics.viscosity_form=\"muller\""},
+    {"numerics.viscosity_form=\"monaghan\""},
     {"numerics.tensile_correction=true"},
     {"numerics.internal_energy=true"},
     {"numerics.half_pressure=true"},

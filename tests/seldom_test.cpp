@@ -83,7 +83,7 @@ TYPED_TEST(SeldomOf, MullerViscosityIsTheSumOverItsKernel) {
   MOLTEN_FLAVOUR;
   Scene with = plain_scene(Dim);
   with.fluid.rheology.viscosity = 20;
-  with.numerics.muller_viscosity = true;
+  with.numerics.viscosity_form = ViscosityForm::muller;
   const double difference = worst_difference<Dim, Real>(with, plain_scene(Dim), [](const auto& s, const NaivePair& p) {
     const auto& q = s.parameters;
     const double pi = std::numbers::pi, h = q.support_radius;

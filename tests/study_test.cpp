@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
+#include <utility>
 
 #include "bench/study/cavity_flow.h"
 #include "bench/study/channel_profile.h"
@@ -10,6 +12,7 @@
 #include "bench/study/particles.h"
 #include "bench/study/request.h"
 #include "bench/study/wave_fit.h"
+#include "bench/study/wave_theory.h"
 
 namespace molten::study {
 namespace {
@@ -178,6 +181,31 @@ TEST(StudyExact, WaveFitFindsFrequencyAndDecay) {
   const WaveFit fit = fit_wave(energy, 1.769, 0.158);
   EXPECT_NEAR(fit.frequency, 1.75, 1e-9);
   EXPECT_NEAR(fit.decay, 0.17, 1e-9);
+}
+
+/// What the amplitudes of potential flow A sinh ky and of a shear wave B sinh my, m² = k² + σ/ν, both ∝ e^{σt}, make of
+/// the two stresses at the surface of a viscous wave of depth 1; zero for its modes.
+std::complex<double> mode_residual(std::complex<double> sigma, double k, double viscosity) {
+  const std::complex<double> m = std::sqrt(k * k + sigma / viscosity);
+  const std::complex<double> flow = std::sinh(k), shear = std::sinh(m);
+  const std::complex<double> tangential_flow = 2 * k * k * flow, tangential_shear = (m * m + k * k) * shear;
+  const std::complex<double> normal_flow = sigma * std::cosh(k) / k + flow / sigma + 2 * viscosity * k * std::cosh(k);
+  const std::complex<double> normal_shear = shear / sigma + 2 * viscosity * m * std::cosh(m);
+  return (tangential_flow * normal_shear - tangential_shear * normal_flow) / (tangential_shear * std::cosh(k));
+}
+
+TEST(StudyExact, ViscousWaveIsTheModeOfItsDispersionRelation) {
+  const double k = M_PI;
+  for (const double viscosity : {1e-3, 4e-3, 2e-2}) {
+    std::complex<double> before(-2 * viscosity * k * k, 1.769), sigma = before * 1.01;
+    for (int round = 0; round < 20 && std::abs(sigma - before) > 1e-12; ++round) {  // secants
+      const auto a = mode_residual(before, k, viscosity), b = mode_residual(sigma, k, viscosity);
+      before = std::exchange(sigma, sigma - b * (sigma - before) / (b - a));
+    }
+    const WaveFit fit = fit_wave(ViscousWave{k, viscosity}.kinetic_energy(7.1, 0.035), 1.769, 4 * viscosity * k * k);
+    EXPECT_NEAR(fit.frequency, sigma.imag(), 1e-3 * sigma.imag()) << viscosity;
+    EXPECT_NEAR(fit.decay, -2 * sigma.real(), -0.02 * sigma.real()) << viscosity;
+  }
 }
 
 // ---- the cases ------------------------------------------------------------------------------------------------------

@@ -63,7 +63,7 @@ Values<FieldList<F...>, Dim, Lanes<Real, I>> load_own(const Particles<Dim, Real>
 }  // namespace wall_terms_detail
 
 /// A finish of a pair pass that adds the walls' share first. Terms of the pass with an `at_walls` do not concern walls;
-/// those with a `behind_wall` add what they make of the solid themselves.
+/// those with a `behind_wall` add what they make of the solid themselves, those with a `before_wall` take another form.
 template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   template <class L> using Neighbour = wall_terms_detail::WallNeighbour<Dim, L>;
   using Reads = typename UnionOf<FieldList<Compression>, typename Terms::Reads...>::type;
@@ -189,10 +189,13 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     pair_pass_detail::Out<typename Sums::List, Radial, Dim, L> out{sums, kernel, {}};
     pair_pass_detail::clear(out.radial);
     const auto add = [&]<class Term>(const Term& term) {
-      if constexpr (requires { term.behind_wall(n, density, out); })
+      if constexpr (requires { term.behind_wall(n, density, out); }) {
         term.behind_wall(n, density, out);
-      else if constexpr (!requires { Term::at_walls; })
+      } else if constexpr (requires { term.before_wall(ij, i, j, out); }) {
+        if (term.on) term.before_wall(ij, i, j, out);
+      } else if constexpr (!requires { Term::at_walls; }) {
         if (term.on) term(ij, i, j, out);
+      }
     };
     std::apply([&](const Terms&... term) { (add(term), ...); }, terms_);
     out.add_radial(Radial{}, ij.x);

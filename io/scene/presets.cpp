@@ -51,7 +51,7 @@ Numerics queiroz() {
   numerics.density = DensityForm::summation;
   numerics.state_equation = StateEquation::ideal_gas;
   numerics.half_pressure = true;
-  numerics.muller_viscosity = true;
+  numerics.viscosity_form = ViscosityForm::muller;
   numerics.artificial_viscosity = 0;
   numerics.xsph = Xsph{Xsph::Form::velocity, 0.4, true};
   numerics.integrator = IntegratorKind::energy_bounded_euler;

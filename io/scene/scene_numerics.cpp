@@ -131,7 +131,10 @@ void read_seldom(const TomlReader& keys, Numerics& numerics) {
   if (keys.has("energy_surplus") && numerics.integrator != IntegratorKind::energy_bounded_euler)
     keys.fail("energy_surplus", "belongs to integrator \"energy_bounded_euler\"; leave it out");
   keys.flag("energy_surplus", numerics.energy_surplus);
-  keys.choice<bool>("viscosity_form", numerics.muller_viscosity, {{"morris", false}, {"muller", true}});
+  keys.choice<ViscosityForm>("viscosity_form", numerics.viscosity_form,
+                             {{"morris", ViscosityForm::morris},
+                              {"monaghan", ViscosityForm::monaghan},
+                              {"muller", ViscosityForm::muller}});
 }
 
 void read_shifting(const TomlReader& keys, Numerics& numerics) {

@@ -224,6 +224,42 @@ TYPED_TEST(OperatorsOf, LaminarViscosityOfQuadraticFlow) {
   });
 }
 
+TYPED_TEST(OperatorsOf, MonaghanViscosityOfQuadraticFlow) {
+  // The same, with the factor of what a lattice makes of x² y²/r⁴.
+  MOLTEN_FLAVOUR;
+  Block<Dim> block;
+  block.scene.fluid.rheology.viscosity = 50;
+  block.scene.numerics.viscosity_form = ViscosityForm::monaghan;
+  auto s = block.template state<Real>();
+  set_velocity(s, [](const auto& x) { return std::array<double, 3>{x[1] * x[1], 0, 0}; });
+  find_rates(s);
+  const double expected = 2 * 50.0 / 1000 * mixed_factor(s.parameters);
+  for_each_inner(s, block.size, [&](std::size_t k, const auto&) {
+    EXPECT_NEAR(s.particles[acceleration][0][k], expected, 1e-3 * expected);
+    for (int d = 1; d < Dim; ++d) EXPECT_NEAR(s.particles[acceleration][d][k], 0, 1e-3 * expected);
+  });
+}
+
+TYPED_TEST(OperatorsOf, MonaghanViscosityDoesNotFeelRotation) {
+  // Nor a free surface of what rotates, which Morris' form does.
+  MOLTEN_FLAVOUR;
+  const auto fastest = [](ViscosityForm form) {
+    Block<Dim> block;
+    block.scene.fluid.rheology.viscosity = 50;
+    block.scene.numerics.viscosity_form = form;
+    auto s = state_of<Dim, Real>(block.scene, cube<Dim>(8, spacing, 0.2), spacing);
+    set_velocity(s, [](const auto& x) { return std::array<double, 3>{-x[1], x[0], 0}; });
+    find_rates(s);
+    double a = 0;
+    for_each_particle(s.particles, [&](std::size_t k, const auto&) {
+      a = std::max(a, std::abs(double(s.particles[acceleration][0][k])));
+    });
+    return a;
+  };
+  EXPECT_GT(fastest(ViscosityForm::morris), 0.1);
+  EXPECT_LT(fastest(ViscosityForm::monaghan), 10 * digits<Real>);
+}
+
 TYPED_TEST(OperatorsOf, StressFormOfQuadraticFlow) {
   // The same with constant viscosity as ∇·S: two gradients, so the gradient's factor f squared. The damping works on
   // what the strain rates miss of the pairs' approach, v_ij·x − ¼ x·(D_i + D_j)·x = (1 − f) x y (2 y_i − y), of which
