@@ -47,7 +47,8 @@ SIZES = {
     "kleefsman": ([12000, 100000, 400000], 12000),
 }
 # What docs/settings.md recommends for flows without jets and splashes; the quick study takes it for these.
-INTERNAL = {"taylor-green", "hot-spot", "two-slabs", "cavity", "couette", "poiseuille", "elliptic-drop", "rotating-patch"}
+INTERNAL = {"taylor-green", "hot-spot", "two-slabs", "cavity", "couette", "poiseuille", "elliptic-drop", "rotating-patch",
+            "standing-wave"}
 FULL_SETTINGS = {"kleefsman": ["end_time=6"]}  # quick: 2 s, the default
 QUICK_SETTINGS = {"hydrostatic-bowl": ["end_time=1.2"]}  # 20 000 triangles of wall
 MARGIN_CASES = ["taylor-green", "koshizuka", "hot-spot", "standing-wave"]
