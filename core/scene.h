@@ -47,6 +47,13 @@ struct Polygon {
   std::vector<std::array<double, 2>> points;  // m; counter-clockwise; in 2-D the region itself, in 3-D in the x-y plane
   double bottom = 0, top = 0;                 // m; extruded from z = bottom to z = top (3-D only)
 };
+struct Text {
+  std::string string;                // UTF-8, one line
+  std::string font;                  // TrueType or OpenType file; beside the scene or among the system's fonts
+  double height = 0, depth = 0;      // m; extent of the upright letters along z, and along y
+  std::array<double, 3> position{};  // m; where the middle of the text's base goes
+  std::array<double, 3> rotation{};  // degrees about x, then y, then z, before placing
+};
 struct Plane {
   std::array<double, 3> point{}, normal{};  // m, -; infinite; the fluid is on the side the normal points to
 };
@@ -65,6 +72,7 @@ struct Shape {
   std::optional<Cylinder> cylinder;
   std::optional<Cone> cone;
   std::optional<Polygon> polygon;
+  std::optional<Text> text;
   std::optional<Plane> plane;      // boundaries only
   std::optional<Terrain> terrain;  // boundaries only
   Place place;

@@ -134,6 +134,52 @@ TEST_F(MeshFile, AllFormatsGiveTheSameClosedMesh) {
   }
 }
 
+/// A tetrahedron of corners (0, 0, 0) and the unit vectors, its node twice as large and shifted by (1, 2, 3).
+std::string glb_tetrahedron() {
+  std::string data;
+  for (const Vec3& v : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) append_point(data, v);
+  for (const int i : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}) append(data, static_cast<std::uint16_t>(i));
+  std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"buffers":[{"byteLength":72}],)"
+      R"("nodes":[{"mesh":0,"scale":[2,2,2],"translation":[1,2,3]}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},)"
+      R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string bytes = "glTF";
+  append(bytes, std::uint32_t{2});
+  append(bytes, static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + data.size()));
+  append(bytes, static_cast<std::uint32_t>(json.size()));
+  bytes += "JSON" + json;
+  append(bytes, static_cast<std::uint32_t>(data.size()));
+  bytes.append("BIN\0", 4);
+  return bytes + data;
+}
+
+TEST_F(MeshFile, BinaryGltfIsReadWhereItsNodesPutIt) {
+  const TriangleMesh mesh = read_mesh(write("a.glb", glb_tetrahedron()));
+  EXPECT_EQ(mesh.vertices.size(), 4u);
+  EXPECT_EQ(mesh.triangles.size(), 4u);
+  EXPECT_NEAR(signed_volume(mesh), 8.0 / 6, 1e-6);
+  EXPECT_NO_THROW(require_closed(mesh, "a.glb"));
+  for (const Vec3& v : mesh.vertices) EXPECT_GE((v - Vec3(1, 2, 3)).minCoeff(), -1e-6);
+}
+
+TEST_F(MeshFile, TruncatedGltfIsRefused) {
+  const std::string bytes = glb_tetrahedron();
+  for (const double part : {0.01, 0.3, 0.8, 0.99})
+    EXPECT_NE(refusal("a.glb", bytes.substr(0, static_cast<std::size_t>(part * bytes.size()))), "") << part;
+}
+
+TEST_F(MeshFile, TheHandIsClosed) {
+  const std::filesystem::path hand = MOLTEN_SOURCE_DIR "/scenes/models/hand.glb";
+  if (!std::filesystem::exists(hand)) GTEST_SKIP() << "scenes/models is empty: run scripts/models";
+  const TriangleMesh mesh = read_mesh(hand);
+  EXPECT_EQ(mesh.triangles.size(), 2314u);
+  EXPECT_NO_THROW(require_closed(mesh, "hand.glb"));
+}
+
 TEST_F(MeshFile, PolygonsAreCutIntoTriangles) {
   const std::string cube =
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"

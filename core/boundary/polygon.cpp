@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace molten {
 namespace {
@@ -20,7 +21,10 @@ bool touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   return on_segment(a, b, c) || on_segment(a, b, d) || on_segment(c, d, a) || on_segment(c, d, b);
 }
 
-std::string text(const Vec2& p) { return "(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ")"; }
+std::string text(const Vec2& p) {
+  std::string place = "(";
+  return place.append(std::to_string(p.x())).append(", ").append(std::to_string(p.y())).append(")");
+}
 
 bool is_ear(const std::vector<Vec2>& points, const std::vector<std::int32_t>& left, std::size_t k) {
   const std::size_t n = left.size(), before = (k + n - 1) % n, after = (k + 1) % n;
@@ -29,6 +33,7 @@ bool is_ear(const std::vector<Vec2>& points, const std::vector<std::int32_t>& le
   for (std::size_t m = 0; m < n; ++m) {
     if (m == before || m == k || m == after) continue;
     const Vec2& p = points[left[m]];
+    if (p == a || p == b || p == c) continue;  // the other end of a bridge
     if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
   }
   return true;
@@ -61,10 +66,69 @@ double twice_area(const std::vector<Vec2>& points) {
   return twice;
 }
 
-std::vector<std::array<std::int32_t, 3>> clip_ears(const std::vector<Vec2>& points) {
+bool rings_touch(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; j < b.size(); ++j)
+      if (touch(a[i], a[(i + 1) % a.size()], b[j], b[(j + 1) % b.size()])) return true;
+  return false;
+}
+
+bool goes_round(const std::vector<Vec2>& ring, const Vec2& p) {
+  bool inside = false;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    if ((a.y() > p.y()) != (b.y() > p.y()) && (turn(a, b, p) > 0) == (b.y() > a.y())) inside = !inside;
+  }
+  return inside;
+}
+
+namespace {
+
+using Ring = std::vector<std::int32_t>;  // indices of points
+
+/// Whether the segment between two points meets an edge of the ring that ends at neither of them.
+bool is_blocked(const std::vector<Vec2>& points, const Ring& ring, const Vec2& from, const Vec2& to) {
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 &a = points[ring[i]], &b = points[ring[(i + 1) % ring.size()]];
+    if (a != from && a != to && b != from && b != to && touch(a, b, from, to)) return true;
+  }
+  return false;
+}
+
+/// Where in `outer` the bridge to point `from` of a hole begins: the nearest corner that sees it and has no bridge yet.
+std::size_t find_bridge(const std::vector<Vec2>& points, const Ring& outer, const std::vector<Ring>& holes,
+                        std::int32_t from) {
+  std::size_t best = outer.size();
+  double shortest = HUGE_VAL;
+  for (std::size_t k = 0; k < outer.size(); ++k) {
+    const Vec2 &a = points[from], &b = points[outer[k]];
+    if ((b - a).squaredNorm() >= shortest || std::count(outer.begin(), outer.end(), outer[k]) > 1) continue;
+    const auto blocks = [&](const Ring& ring) { return is_blocked(points, ring, a, b); };
+    if (blocks(outer) || std::any_of(holes.begin(), holes.end(), blocks)) continue;
+    shortest = (b - a).squaredNorm();
+    best = k;
+  }
+  return best;
+}
+
+/// The outline and its holes as one ring. The hole that reaches farthest right comes first, so it sees the outline.
+Ring bridge(const std::vector<Vec2>& points, Ring outer, std::vector<Ring> holes) {
+  const auto is_left = [&](std::int32_t a, std::int32_t b) { return points[a].x() < points[b].x(); };
+  for (Ring& hole : holes) std::rotate(hole.begin(), std::max_element(hole.begin(), hole.end(), is_left), hole.end());
+  std::sort(holes.begin(), holes.end(), [&](const Ring& a, const Ring& b) { return is_left(b[0], a[0]); });
+  for (const Ring& hole : holes) {
+    const std::size_t k = find_bridge(points, outer, holes, hole[0]);
+    if (k == outer.size()) continue;  // not for rings that do not touch
+    Ring both_ways(hole);
+    both_ways.push_back(hole[0]);
+    both_ways.push_back(outer[k]);
+    outer.insert(outer.begin() + static_cast<std::ptrdiff_t>(k) + 1, both_ways.begin(), both_ways.end());
+  }
+  return outer;
+}
+
+std::vector<std::array<std::int32_t, 3>> clip_ears(const std::vector<Vec2>& points, Ring left) {
   std::vector<std::array<std::int32_t, 3>> triangles;
-  std::vector<std::int32_t> left(points.size());
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = static_cast<std::int32_t>(i);
   std::size_t k = 0;
   for (std::size_t tries = 0; left.size() > 3;) {
     const std::size_t n = left.size();
@@ -81,6 +145,23 @@ std::vector<std::array<std::int32_t, 3>> clip_ears(const std::vector<Vec2>& poin
   }
   triangles.push_back({left[0], left[1], left[2]});
   return triangles;
+}
+
+}  // namespace
+
+std::vector<std::array<std::int32_t, 3>> clip_ears(const std::vector<Vec2>& points) {
+  return clip_ears(std::vector<std::vector<Vec2>>{points});
+}
+
+std::vector<std::array<std::int32_t, 3>> clip_ears(const std::vector<std::vector<Vec2>>& rings) {
+  std::vector<Vec2> points;
+  std::vector<Ring> indices;
+  for (const std::vector<Vec2>& ring : rings) {
+    Ring& one = indices.emplace_back(ring.size());
+    std::iota(one.begin(), one.end(), static_cast<std::int32_t>(points.size()));
+    points.insert(points.end(), ring.begin(), ring.end());
+  }
+  return clip_ears(points, bridge(points, indices.front(), {indices.begin() + 1, indices.end()}));
 }
 
 }  // namespace molten

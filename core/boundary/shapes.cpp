@@ -96,19 +96,6 @@ void add_walls(TriangleMesh& mesh, int n, std::int32_t bottom, std::int32_t top)
   }
 }
 
-TriangleMesh extrude(const std::vector<Vec2>& points, double bottom, double top) {
-  TriangleMesh mesh;
-  const int n = static_cast<int>(points.size());
-  for (const double z : {bottom, top})
-    for (const Vec2& p : points) mesh.vertices.emplace_back(p.x(), p.y(), z);
-  for (const Triangle& t : clip_ears(points)) {
-    mesh.triangles.push_back({t[0], t[2], t[1]});
-    mesh.triangles.push_back({t[0] + n, t[1] + n, t[2] + n});
-  }
-  add_walls(mesh, n, 0, n);
-  return mesh;
-}
-
 std::vector<Vec2> circle(const Vec2& center, double radius, double edge) {
   const int n = parts(2 * pi * radius, edge, 16, 1 << 20);
   std::vector<Vec2> points;
@@ -191,14 +178,14 @@ TriangleMesh tessellate(const Shape& shape, double edge) {
   if (shape.sphere) return tessellate_sphere(*shape.sphere, edge);
   if (shape.box) {
     const auto &low = shape.box->min, &high = shape.box->max;
-    return extrude(rectangle(low[0], low[1], high[0], high[1]), low[2], high[2]);
+    return extrude({rectangle(low[0], low[1], high[0], high[1])}, low[2], high[2]);
   }
   if (shape.cylinder) {
     const Cylinder& c = *shape.cylinder;
     return tessellate_cone({c.base, c.radius, c.radius, c.height}, edge);
   }
   if (shape.cone) return tessellate_cone(*shape.cone, edge);
-  if (shape.polygon) return extrude(polygon_points(shape), shape.polygon->bottom, shape.polygon->top);
+  if (shape.polygon) return extrude({polygon_points(shape)}, shape.polygon->bottom, shape.polygon->top);
   refuse(shape, "needs one of sphere, box, cylinder, cone, polygon");
 }
 
@@ -219,6 +206,24 @@ std::vector<Vec2> outline(const Shape& shape, double edge) {
   }
   if (shape.polygon) return polygon_points(shape);
   refuse(shape, "needs one of sphere, box, cylinder, cone, polygon in two dimensions");
+}
+
+TriangleMesh extrude(const std::vector<std::vector<Vec2>>& rings, double bottom, double top) {
+  TriangleMesh mesh;
+  for (const double z : {bottom, top})
+    for (const std::vector<Vec2>& ring : rings)
+      for (const Vec2& p : ring) mesh.vertices.emplace_back(p.x(), p.y(), z);
+  const auto n = static_cast<std::int32_t>(mesh.vertices.size() / 2);
+  for (const Triangle& t : clip_ears(rings)) {
+    mesh.triangles.push_back({t[0], t[2], t[1]});
+    mesh.triangles.push_back({t[0] + n, t[1] + n, t[2] + n});
+  }
+  std::int32_t first = 0;
+  for (const std::vector<Vec2>& ring : rings) {
+    add_walls(mesh, static_cast<int>(ring.size()), first, n + first);
+    first += static_cast<std::int32_t>(ring.size());
+  }
+  return mesh;
 }
 
 double signed_volume(const TriangleMesh& mesh) {

@@ -16,6 +16,9 @@ TriangleMesh tessellate(const Shape& shape, double edge);
 /// cone (trapezium) or polygon, counter-clockwise, not repeated at the end.
 std::vector<Vec2> outline(const Shape& shape, double edge);
 
+/// What lies over an outline with holes (as clip_ears wants them) from z = bottom to z = top (m); closed.
+TriangleMesh extrude(const std::vector<std::vector<Vec2>>& rings, double bottom, double top);
+
 /// Enclosed volume of a closed mesh (m³; negative when inverted).
 double signed_volume(const TriangleMesh& mesh);
 

@@ -14,6 +14,7 @@
 #include "io/geometry/bodies.h"
 #include "io/geometry/mesh_file.h"
 #include "io/geometry/terrain.h"
+#include "io/geometry/text.h"
 #include "io/geometry/vents.h"
 #include "io/scene/scene_file.h"
 
@@ -56,6 +57,11 @@ TriangleMesh placed_mesh(const Scene& scene, const MeshFile& file) {
 
 TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, bool must_close) {
   if (shape.terrain) return triangulate(read_terrain(*shape.terrain, locate(scene, shape.terrain->path)));
+  if (shape.text) {
+    TriangleMesh letters = extrude_text(scene, shape);
+    place(letters, {.position = shape.text->position, .placed = true, .rotation = shape.text->rotation});
+    return letters;
+  }
   if (!shape.mesh) return tessellate(shape, facet_edge * spacing);
   const auto file = locate(scene, shape.mesh->path);
   TriangleMesh mesh = read_mesh(file);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "io/geometry/text.h"
 #include "io/hash.h"
 #include "io/scene/scene_file.h"
 #include "version.h"
@@ -39,6 +40,8 @@ std::string hash_of(const std::filesystem::path& file) {
 nlohmann::ordered_json files_of(const Scene& scene) {
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
   const auto add = [&](const Shape& shape) {
+    if (shape.text)
+      files.push_back({{"path", shape.text->font}, {"hash", hash_of(find_font(scene, *shape.text, shape.place))}});
     const std::string path = shape.mesh ? shape.mesh->path : shape.terrain ? shape.terrain->path : "";
     if (!path.empty()) files.push_back({{"path", path}, {"hash", hash_of(locate(scene, path))}});
   };

@@ -11,8 +11,8 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-constexpr std::array<std::string_view, 8> shape_keys = {"mesh", "sphere",  "box",   "cylinder",
-                                                        "cone", "polygon", "plane", "terrain"};
+constexpr std::array<std::string_view, 9> shape_keys = {"mesh",    "sphere", "box",   "cylinder", "cone",
+                                                        "polygon", "text",   "plane", "terrain"};
 constexpr std::array<std::string_view, 3> mesh_keys = {"height", "position", "rotation"};
 constexpr std::array<std::string_view, 3> terrain_keys = {"cell_size", "scale", "origin"};
 
@@ -146,6 +146,20 @@ Polygon read_polygon(const TomlReader& table, int dimensions) {
   return polygon;
 }
 
+Text read_text(const TomlReader& table) {
+  const TomlReader keys = *table.table("text", {"string", "font", "height", "depth", "position", "rotation"});
+  Text text;
+  keys.require("string", "give the letters");
+  keys.text("string", text.string);
+  keys.require("font", "give a font file, such as DejaVuSans-Bold.ttf");
+  keys.text("font", text.font);
+  read_length(keys, "height", text.height);
+  read_length(keys, "depth", text.depth);
+  keys.numbers("position", text.position, Range::any("m"));
+  keys.numbers("rotation", text.rotation, Range{-360, 360, true, "degrees"});
+  return text;
+}
+
 Plane read_plane(const TomlReader& table, int dimensions) {
   const TomlReader keys = *table.table("plane", {"point", "normal"});
   Plane plane;
@@ -177,7 +191,7 @@ void check_allowed(const TomlReader& table, std::string_view shape, int dimensio
   if (use == ShapeUse::fluid && (shape == "plane" || shape == "terrain")) {
     table.fail(shape, "encloses nothing that could be filled; put it into a [[boundary]]");
   }
-  if (dimensions == 2 && (shape == "mesh" || shape == "terrain")) {
+  if (dimensions == 2 && (shape == "mesh" || shape == "text" || shape == "terrain")) {
     table.fail(shape, "is for 3-D scenes; use another shape or dimensions = 3");
   }
 }
@@ -229,6 +243,7 @@ Shape read_shape(const TomlReader& table, int dimensions, ShapeUse use) {
   if (key == "cylinder") shape.cylinder = read_cylinder(table, dimensions);
   if (key == "cone") shape.cone = read_cone(table, dimensions);
   if (key == "polygon") shape.polygon = read_polygon(table, dimensions);
+  if (key == "text") shape.text = read_text(table);
   if (key == "plane") shape.plane = read_plane(table, dimensions);
   if (key == "terrain") shape.terrain = read_terrain_keys(table);
   return shape;
