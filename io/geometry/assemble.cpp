@@ -41,7 +41,11 @@ void place(TriangleMesh& mesh, const MeshFile& file) {
   if (!file.height && !file.placed) return;
   Eigen::AlignedBox3d box;
   for (const Vec3& v : mesh.vertices) box.extend(v);
-  const double scale = file.height ? *file.height / box.sizes()[2] : 1;
+  const double extent = box.sizes()[2];
+  if (file.height && !(extent > 1e-12 * box.sizes().norm()))
+    throw Error(ExitCode::geometry,
+                file.path + ": height scales by the extent along z, and this mesh is flat there; leave height out");
+  const double scale = file.height ? *file.height / extent : 1;
   const Vec3 foot(box.center()[0], box.center()[1], box.min()[2]);
   const Vec3 position(file.position.data());
   for (Vec3& v : mesh.vertices) v = position + scale * (v - foot);
@@ -59,7 +63,9 @@ TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, boo
   if (shape.terrain) return triangulate(read_terrain(*shape.terrain, locate(scene, shape.terrain->path)));
   if (shape.text) {
     TriangleMesh letters = extrude_text(scene, shape);
-    place(letters, {.position = shape.text->position, .placed = true, .rotation = shape.text->rotation});
+    MeshFile where;
+    where.position = shape.text->position, where.placed = true, where.rotation = shape.text->rotation;
+    place(letters, where);
     return letters;
   }
   if (!shape.mesh) return tessellate(shape, facet_edge * spacing);
