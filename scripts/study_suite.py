@@ -328,7 +328,7 @@ def report(folder):
     pictures = draw(groups, peers, folder)
     sections = [("Least errors", smallest_table(groups), "Bold: within reach."),
                 ("Cheapest settings for an error", cheapest_table(groups), ""),
-                ("Peers", peer_lines(groups, peers), "Run times of peers are measured in the same session, where given."),
+                ("Peers", peer_lines(groups, peers), "Run times of peers are measured beside ours, where given."),
                 ("How far the time step can be pushed", margin_table(groups), "")]
     text = "# Results of the study\n\nWritten by `scripts/study`.\n"
     for title, lines, note in sections:
