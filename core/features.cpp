@@ -94,19 +94,6 @@ void require_sensible_integrator(const Scene& scene) {
         std::string(name_of(kind)) + " knows no walls that move, vents or outflow; use leap_frog or symplectic_euler");
 }
 
-/// A free body takes the impulses of contacts one by one; a much lighter one than the fluid it pushes away gains energy
-/// by that, a much heavier one drives particles through the walls.
-void require_sensible_bodies(const Scene& scene) {
-  constexpr double lightest = 0.05, heaviest = 1000;  // over the fluid's density
-  for (std::size_t k = 0; k < scene.boundaries.size(); ++k) {
-    if (!scene.boundaries[k].body) continue;
-    const double part = scene.boundaries[k].body->density / scene.fluid.density;
-    if (part < lightest || part > heaviest)
-      refuse(scene, "boundary." + std::to_string(k) + ".body.density",
-             "is not between 0.05 and 1000 times the fluid's density, where bodies are stable; give one that is");
-  }
-}
-
 /// What no rates pass has together.
 void require_one_pass(const Scene& scene, const Features& f) {
   if (!f.any_seldom()) return;
@@ -145,7 +132,6 @@ Features features_of(const Scene& scene) {
   require_sensible_sleep(scene);
   require_sensible_walls(scene);
   require_sensible_integrator(scene);
-  require_sensible_bodies(scene);
   Features f;
   f.heat = scene.fluid.heat.has_value();
   f.stress = !scene.fluid.rheology.constant();

@@ -131,16 +131,6 @@ TEST(Features, DensityFiltersAndSummationAddTheirPasses) {
   expect_adds([](Scene& s) { s.numerics.density = DensityForm::summation; }, {{}, {}, {"density"}});
 }
 
-TEST(Features, BodiesFarLighterOrHeavierThanTheFluidAreRefused) {
-  const auto with = [](double density) {
-    Scene scene;
-    scene.boundaries.emplace_back().body = FreeBody{density};
-    return features_of(scene);
-  };
-  for (const double density : {10.0, 1e-30, 1.1e6, 1e30}) EXPECT_THROW(with(density), Error) << density;
-  for (const double density : {51.0, 7800.0, 9e5}) EXPECT_TRUE(with(density).bodies) << density;
-}
-
 TEST(Features, SleepAddsItsColumnAndItsPass) {
   expect_adds([](Scene& s) { s.numerics.sleep.emplace(); }, {{"rest_time"}, {}, {"wake and rest"}});
   Scene scene = minimal();

@@ -228,7 +228,7 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
       }
       wall.plane_normal.normalize();
     } else if constexpr (Dim == 3) {
-      TriangleMesh mesh = surface(scene, boundary.shape, spacing, boundary.inside);
+      TriangleMesh mesh = surface(scene, boundary.shape, spacing, boundary.inside || boundary.body);
       if (boundary.inside) flip(mesh);
       wall.vertices = std::move(mesh.vertices);
       wall.facets = std::move(mesh.triangles);
@@ -248,6 +248,7 @@ template <int Dim>
 Surroundings<Dim> build_surroundings(const Scene& scene, const Start& start, const Parameters<Dim>& p) {
   std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
   Bodies<Dim> bodies = take_bodies(scene, walls);
+  require_stable(scene, walls, bodies, start.spacing);
   Contact<Dim> contact(std::move(walls), p.contact_radius, p.support_radius);
   bodies.place(contact);
   return {std::move(contact), std::move(bodies), build_vents<Dim>(scene, start, p.support_radius)};

@@ -89,6 +89,38 @@ template <int Dim> Bodies<Dim> take_bodies(const Scene& scene, std::vector<Wall<
 template Bodies<2> take_bodies(const Scene&, std::vector<Wall<2>>&);
 template Bodies<3> take_bodies(const Scene&, std::vector<Wall<3>>&);
 
+namespace {
+
+double facet_measure(const Wall<2>& wall, const std::array<std::int32_t, 2>& f) {
+  return (wall.vertices[f[1]] - wall.vertices[f[0]]).norm();
+}
+double facet_measure(const Wall<3>& wall, const std::array<std::int32_t, 3>& f) {
+  return (wall.vertices[f[1]] - wall.vertices[f[0]]).cross(wall.vertices[f[2]] - wall.vertices[f[0]]).norm() / 2;
+}
+
+}  // namespace
+
+template <int Dim>
+void require_stable(const Scene& scene, const std::vector<Wall<Dim>>& walls, const Bodies<Dim>& bodies,
+                    double spacing) {
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    if (walls[w].body < 0 || !bodies.body(static_cast<std::size_t>(walls[w].body)).inertia) continue;
+    double surface = 0;
+    for (const auto& facet : walls[w].facets) surface += facet_measure(walls[w], facet);
+    const double touching = scene.fluid.density * spacing * surface / 2;
+    const double mass = bodies.body(static_cast<std::size_t>(walls[w].body)).inertia->mass;
+    if (2 * mass >= touching) continue;
+    refuse(
+        scene, fmt::format("boundary.{}.body.density", w),
+        fmt::format("makes the body lighter than half of the particles that it touches; give {:.4g} kg/m³ or more, or "
+                    "take more particles",
+                    scene.boundaries[w].body->density * touching / (2 * mass)));
+  }
+}
+
+template void require_stable(const Scene&, const std::vector<Wall<2>>&, const Bodies<2>&, double);
+template void require_stable(const Scene&, const std::vector<Wall<3>>&, const Bodies<3>&, double);
+
 TriangleMesh placed(TriangleMesh mesh, const SnapshotBody& body) {
   const auto& t = body.turn;
   for (Vec3& v : mesh.vertices)
