@@ -48,6 +48,10 @@ void place(TriangleMesh& mesh, const MeshFile& file) {
   const double scale = file.height ? *file.height / extent : 1;
   const Vec3 foot(box.center()[0], box.center()[1], box.min()[2]);
   const Vec3 position(file.position.data());
+  constexpr double furthest = 1e9;  // sizes of the mesh; beyond, its corners run into one another
+  if (position.norm() > furthest * scale * box.sizes().norm())
+    throw Error(ExitCode::geometry, fmt::format("{}: is {:.3g} m in size and put {:.3g} m away; check its position",
+                                                file.path, scale * box.sizes().norm(), position.norm()));
   for (Vec3& v : mesh.vertices) v = position + scale * (v - foot);
 }
 
@@ -204,6 +208,19 @@ Response response_of(const Scene& scene, const Boundary& boundary, double spacin
   return response;
 }
 
+/// Walls far smaller than particles are slips of a unit or of a zero.
+template <int Dim> void require_size(const Scene& scene, std::size_t number, const Wall<Dim>& wall, double spacing) {
+  if (wall.is_plane) return;
+  constexpr double smallest = 1e-6;  // spacings
+  Point<Dim> lower = wall.vertices.at(0), upper = lower;
+  for (const Point<Dim>& v : wall.vertices) lower = lower.cwiseMin(v), upper = upper.cwiseMax(v);
+  const double size = (upper - lower).norm();
+  if (size < smallest * spacing)
+    refuse(scene, fmt::format("boundary.{}", number),
+           fmt::format("is {:.3g} m in size, far below the spacing of {:.3g} m; check its height and units", size,
+                       spacing));
+}
+
 }  // namespace
 
 template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double spacing) {
@@ -239,6 +256,7 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
       for (std::int32_t k = 0; k < n; ++k)
         boundary.inside ? wall.facets.push_back({k, (k + 1) % n}) : wall.facets.push_back({(k + 1) % n, k});
     }
+    require_size(scene, walls.size(), wall, spacing);
     walls.push_back(std::move(wall));
   }
   return walls;
