@@ -219,8 +219,9 @@ template <int Dim, class Real> std::string find_non_finite(const State<Dim, Real
   for (const std::uint32_t slot : slots_by_id(p)) {
     for_each_field([&]<class F>(F) {
       if (!line.empty() || !p.has(F{}) || F::storage == Storage::id) return;
+      constexpr double largest = F::shape == FieldShape::vector ? 1e18 : 1e30;  // whose square single precision holds
       for (const auto* column : p[F{}].c)
-        if (!std::isfinite(static_cast<double>(column[slot])) || std::abs(static_cast<double>(column[slot])) > 1e30)
+        if (!(std::abs(static_cast<double>(column[slot])) <= largest))
           line = "particle " + std::to_string(p[id][0][slot]) + ": " + std::string(F::name) +
                  " is not finite: " + likely_cause(F::name);
     });

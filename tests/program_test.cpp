@@ -79,6 +79,12 @@ TEST_F(Diverging, NamesParticleFieldCauseAndCheckpoint) {
   }
 }
 
+TEST_F(Diverging, SpeedsWhoseSquareOverflowsAreNamed) {
+  const Outcome o = run(block_scene, {"--set", "fluid.velocity=[1e20, 0]", "--set", "numerics.sound_speed=100.0"});
+  EXPECT_EQ(o.code, 4) << o.err;
+  EXPECT_TRUE(contains(last_line(o.err), "velocity is not finite")) << o.err;
+}
+
 TEST_F(Diverging, HeatThatRunsAwayIsNoticed) {
   const std::string hot =
       replaced(block_scene, "[run]", "[fluid.heat]\ndiffusivity = 1.0\ninitial = { bottom = 1, top = 9 }\n[run]");
