@@ -143,24 +143,6 @@ template <int Dim> bool FacetGrid<Dim>::any_in(const Index& lo, const Index& hi)
   return false;
 }
 
-/// The part first..last of the path that is inside the grid.
-template <int Dim>
-bool FacetGrid<Dim>::enter(const Point<Dim>& x, const Point<Dim>& d, double& first, double& last) const {
-  first = 0;
-  last = 1;
-  if (brick_.empty()) return false;
-  for (int k = 0; k < Dim; ++k) {
-    const double a = origin_[k] - x[k], b = end_[k] - x[k];
-    if (d[k] == 0) {
-      if (!(a <= 0 && b >= 0)) return false;
-      continue;
-    }
-    first = std::max(first, std::min(a / d[k], b / d[k]));
-    last = std::min(last, std::max(a / d[k], b / d[k]));
-  }
-  return first <= last;
-}
-
 template <int Dim> double FacetGrid<Dim>::mean_list() const {
   std::size_t lists = 0;
   for (const std::uint64_t brick : used_) lists += static_cast<std::size_t>(std::popcount(brick));

@@ -70,7 +70,6 @@ template <int Dim> class FacetGrid {
   std::span<const std::int32_t> list(const Index& cell) const;
   bool used(const Index& cell) const { return used_[brick_slot(cell)] >> slot_in_brick(cell) & 1; }
   bool any_in(const Index& lo, const Index& hi) const;
-  bool enter(const Point<Dim>& x, const Point<Dim>& d, double& first, double& last) const;
 
   Point<Dim> origin_ = Point<Dim>::Zero(), end_ = Point<Dim>::Zero();  // m
   double cell_ = 0, per_cell_ = 0, margin_ = 0;                        // m, 1/m, m
@@ -136,7 +135,7 @@ template <int Dim>
 template <class Visit>
 void FacetGrid<Dim>::walk(const Point<Dim>& x, const Point<Dim>& d, Visit&& visit) const {
   double t, last;
-  if (!enter(x, d, t, last)) return;
+  if (brick_.empty() || !part_in_box(origin_, end_, x, d, t, last)) return;
   Index cell = cell_of(Point<Dim>(x + t * d));
   const Index end = cell_of(Point<Dim>(x + last * d));
   Index step, left;        // direction and number of steps that remain, per axis

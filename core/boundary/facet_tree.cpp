@@ -56,7 +56,6 @@ template <int Dim> struct FacetTree<Dim>::Impl {
     if (device) rtcReleaseDevice(device);
   }
   void bounds(std::int32_t facet, RTCBounds& box) const;
-  bool clip(const Point<Dim>& x, const Point<Dim>& d, double& first, double& last) const;
 };
 
 template <int Dim> FacetTree<Dim>::Impl::Impl(std::span<const Facet<Dim>> all, double margin) : facets(all) {
@@ -108,23 +107,6 @@ template <int Dim> void FacetTree<Dim>::Impl::bounds(std::int32_t facet, RTCBoun
   box = {lo[0], lo[1], lo[2], 0, hi[0], hi[1], hi[2], 0};
 }
 
-/// The part first..last of a path from x (relative to the middle) that is within the box around all.
-template <int Dim>
-bool FacetTree<Dim>::Impl::clip(const Point<Dim>& x, const Point<Dim>& d, double& first, double& last) const {
-  first = 0;
-  last = 1;
-  for (int k = 0; k < Dim; ++k) {
-    const double a = -half[k] - x[k], b = half[k] - x[k];
-    if (d[k] == 0) {
-      if (!(a <= 0 && b >= 0)) return false;
-      continue;
-    }
-    first = std::max(first, std::min(a / d[k], b / d[k]));
-    last = std::min(last, std::max(a / d[k], b / d[k]));
-  }
-  return first <= last;
-}
-
 template <int Dim>
 FacetTree<Dim>::FacetTree(std::span<const Facet<Dim>> facets, double margin)
     : impl_(std::make_unique<Impl>(facets, margin)) {}
@@ -134,7 +116,7 @@ template <int Dim>
 void FacetTree<Dim>::sweep(const Point<Dim>& x, const Point<Dim>& d, OnPath visit, void* visitor) const {
   const Point<Dim> from = x - impl_->middle;
   double first, last;
-  if (!impl_->clip(from, d, first, last)) return;
+  if (!part_in_box<Dim>(-impl_->half, impl_->half, from, d, first, last)) return;
   const double length = d.norm();
   const Point<Dim> start = from + first * d, way = d / length;
   PathContext context;
