@@ -40,6 +40,12 @@ struct Features {
   /// serves.
   bool only_basic_forces() const { return !heat && !stress && !laminar && !xsph; }
 
+  /// Beside the basic ones, one force only, XSPH or heat, or both that melting takes: passes with nothing else serve.
+  bool only_one_more_force() const {
+    const int more = stress + heat + (laminar && !monaghan_viscosity) + xsph;
+    return !density_diffusion && !monaghan_viscosity && (more == 1 || (more == 2 && stress && heat));
+  }
+
   /// How often a step finds rates: once, or once a stage of a Runge-Kutta method.
   int stages() const;
   /// The first stage of a step takes the rates of the last one of the step before.

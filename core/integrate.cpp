@@ -21,9 +21,9 @@ namespace molten {
 
 namespace {
 
-/// Four particles at once: the pass is bound by memory, and one by one by instructions. What is padding has no rates,
-/// so it stays at zero.
-template <int Dim, class Real> class Integrator {
+/// By leap-frog or symplectic Euler. Four particles at once: the pass is bound by memory, and one by one by
+/// instructions. What is padding has no rates, so it stays at zero.
+template <bool leap_frog, int Dim, class Real> class Integrator {
   using Wide = ClusterLanes;
 
  public:
@@ -31,7 +31,7 @@ template <int Dim, class Real> class Integrator {
       : s_(s),
         p_(s.particles),
         dt_(s.clock.dt),
-        kick_(s.features.integrator == IntegratorKind::leap_frog ? (previous_dt + dt_) / 2 : dt_),
+        kick_(leap_frog ? (previous_dt + dt_) / 2 : dt_),
         stretch_(previous_dt > 0 ? dt_ / previous_dt : 0),
         drift_(s),
         mover_(s) {}
@@ -78,7 +78,7 @@ template <int Dim, class Real> class Integrator {
 
   ClusterMotion<Dim> kicked(std::size_t slot) const {
     ClusterMotion<Dim> m;
-    const auto& v = s_.features.integrator == IntegratorKind::leap_frog ? half_velocity_.c : velocity_.c;
+    const auto& v = leap_frog ? half_velocity_.c : velocity_.c;
     for (int d = 0; d < Dim; ++d) {
       m.position[d] = load<cluster_size>(position_[d] + slot);
       m.velocity[d] = read(v[d] + slot) + Wide(kick_) * read(acceleration_[d] + slot);
@@ -108,7 +108,6 @@ template <int Dim, class Real> class Integrator {
   }
 
   void keep(std::size_t slot, const ClusterMotion<Dim>& m, const Wide& bounced) const {
-    const bool leap_frog = s_.features.integrator == IntegratorKind::leap_frog;
     // The wall has already had its say on a particle that bounced.
     const Wide ahead = leap_frog ? Wide(dt_ / 2) * (Wide(1.0) - bounced) : Wide(0.0);
     for (int d = 0; d < Dim; ++d) {
@@ -121,7 +120,7 @@ template <int Dim, class Real> class Integrator {
   void advance_compression(std::size_t slot) const {
     const Wide rate = read(compression_rate_ + slot), previous = read(previous_rate_ + slot), dt(dt_);
     const Wide rise = Wide(stretch_) * (rate - previous);  // of the rate, from this step to the next
-    if (s_.features.integrator == IntegratorKind::leap_frog) {
+    if constexpr (leap_frog) {
       const Wide half = read(half_compression_ + slot) + Wide(kick_) * rate;
       write(half, half_compression_ + slot);
       write(half + Wide(dt_ / 2) * (rate + rise), compression_ + slot);
@@ -196,6 +195,20 @@ template <int Dim, class Real> class Preparation {
   Real* local_temperature_ = s_.particles[local_temperature][0];
 };
 
+/// Moves all active clusters and prepares them for the next step's passes.
+template <bool leap_frog, int Dim, class Real> Moved<Dim> move_all(State<Dim, Real>& s) {
+  const Integrator<leap_frog, Dim, Real> integrator(s, s.clock.previous_dt);
+  const Preparation<Dim, Real> preparation(s);
+  const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
+  return reduce_slots(
+      s.neighbours.clusters() - first, Moved<Dim>{0, std::vector<Kick<Dim>>(s.bodies.count())},
+      [&](std::size_t k, Moved<Dim>& all) {
+        all.way2 = std::max(all.way2, integrator.advance(first + k, all.kicks));
+        preparation.of(first + k);
+      },
+      [](Moved<Dim>& a, const Moved<Dim>& b) { a.join(b); });
+}
+
 }  // namespace
 
 template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
@@ -204,16 +217,7 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   if (kind == IntegratorKind::energy_bounded_euler) return integrate_energy_bounded(s);
   if (kind != IntegratorKind::leap_frog && kind != IntegratorKind::symplectic_euler) return finish_stages(s);
   if (s.features.bodies) s.bodies.begin_step(s.contact, s.clock.time, s.clock.dt, s.parameters.gravity);
-  const Integrator<Dim, Real> integrator(s, s.clock.previous_dt);
-  const Preparation<Dim, Real> preparation(s);
-  const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
-  const Moved<Dim> moved = reduce_slots(
-      s.neighbours.clusters() - first, Moved<Dim>{0, std::vector<Kick<Dim>>(s.bodies.count())},
-      [&](std::size_t k, Moved<Dim>& all) {
-        all.way2 = std::max(all.way2, integrator.advance(first + k, all.kicks));
-        preparation.of(first + k);
-      },
-      [](Moved<Dim>& a, const Moved<Dim>& b) { a.join(b); });
+  const Moved<Dim> moved = kind == IntegratorKind::leap_frog ? move_all<true>(s) : move_all<false>(s);
   s.neighbours.moved(std::sqrt(moved.way2));
   s.sleep.warm_time += s.clock.dt;
   s.sleep.travel +=

@@ -70,19 +70,27 @@ template <int Dim, class Real> class Mover {
   /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent moves, does not count.
   /// `kicks`: what bodies give to particles is added.
   ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
-    ClusterLanes bounced(0.0);
     if (may_collide(cluster)) {
-      for (int n = 0; n < cluster_size; ++n)
-        if (may_bounce(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(m, n, kicks)));
-    } else {
-      m.position += ClusterLanes(s_.clock.dt) * m.rate;
+      ClusterMotion<Dim> moved = m;  // a copy for the other function: elsewhere the motion stays in registers
+      const ClusterLanes bounced = collide_cluster(cluster, moved, kicks);
+      m = moved;
+      return bounced;
     }
-    return bounced;
+    m.position += ClusterLanes(s_.clock.dt) * m.rate;
+    return ClusterLanes(0.0);
   }
 
  private:
   bool may_collide(std::size_t cluster) const { return always_collide_ || s_.near_wall[cluster]; }
   bool may_bounce(std::size_t slot) const { return !s_.particles.is_padding(slot) && !(inlet_ && inlet_[slot] >= 0); }
+
+  [[gnu::noinline]] ClusterLanes collide_cluster(std::size_t cluster, ClusterMotion<Dim>& m,
+                                                 std::span<Kick<Dim>> kicks) const {
+    ClusterLanes bounced(0.0);
+    for (int n = 0; n < cluster_size; ++n)
+      if (may_bounce(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(m, n, kicks)));
+    return bounced;
+  }
 
   bool collide(ClusterMotion<Dim>& of, int n, std::span<Kick<Dim>> kicks) const {
     Motion<Dim> m;

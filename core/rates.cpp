@@ -45,22 +45,21 @@ template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   const auto scope = s.timer.scope(s.features.heat ? "forces and heat" : "forces");
   if (s.features.any_seldom()) return seldom_rates_pass(s);
   if (s.features.gradient_correction) return corrected_rates_pass(s);
+  if (s.features.only_one_more_force()) return single_rates_pass(s);
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
   const auto pass = [&](const auto&... terms) { run_rates_pass_at_walls(s, Continuity{}, PressureForce{}, terms...); };
-  // What most scenes have, without and with artificial viscosity; what melts; and all that a scene may have.
+  // What most scenes have, without and with artificial viscosity; and all that a scene may have.
   const ArtificialViscosity<Real> artificial = artificial_viscosity_of(s);
   const DensityDiffusion<Dim, Real> diffusion(p.density_diffusion, p.smoothing_length, p.eos, p.gravity);
-  const StressForce<Dim, Real> stress_force(s.features.stress, rho0);
-  const HeatConduction<Real> conduction(s.features.heat ? p.diffusivity : 0, rho0);
   if (s.features.only_basic_forces())
     diffusion.on ? pass(artificial, Always(diffusion)) : artificial.on ? pass(Always(artificial)) : pass();
-  else if (stress_force.on && conduction.on && !s.features.xsph && !diffusion.on)
-    pass(artificial, Always(stress_force), Always(conduction));
   else
     pass(artificial, LaminarViscosity<Real>(s.features.morris_viscosity() ? p.viscosity : 0, rho0),
-         MonaghanViscosity<Dim, Real>(s.features.monaghan_viscosity ? p.viscosity : 0, rho0), stress_force, conduction,
-         diffusion, XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
+         MonaghanViscosity<Dim, Real>(s.features.monaghan_viscosity ? p.viscosity : 0, rho0),
+         StressForce<Dim, Real>(s.features.stress, rho0),
+         HeatConduction<Real>(s.features.heat ? p.diffusivity : 0, rho0), diffusion,
+         XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)              \

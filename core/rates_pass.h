@@ -138,7 +138,9 @@ template <int Dim, class Real> ArtificialViscosity<Real> artificial_viscosity_of
   return {p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, p.eos.rest_density};
 }
 
-/// The rates passes in files of their own: with corrected gradients, and with what few scenes ask for.
+/// The rates passes in files of their own: with one force beside the basic ones or with what melts, with corrected
+/// gradients, and with what few scenes ask for.
+template <int Dim, class Real> void single_rates_pass(State<Dim, Real>& s);
 template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s);
 template <int Dim, class Real> void seldom_rates_pass(State<Dim, Real>& s);
 
