@@ -55,25 +55,35 @@ TYPED_TEST_SUITE(CorrectionsOf, Flavours, FlavourNames);
 /// Round-off of such sums.
 template <class Real> constexpr double digits = sizeof(Real) == 4 ? 2e-5 : 1e-10;
 
-TYPED_TEST(CorrectionsOf, InvertTheMoment) {
+template <int Dim> GradientCorrection<Dim> correction_for(const Naive<Dim>& naive) {
+  SymTensor<Dim, double> m;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = a; b < Dim; ++b) m(a, b) = naive.moment(a, b);
+  return GradientCorrection<Dim>(m);
+}
+
+TYPED_TEST(CorrectionsOf, InvertTheMomentAndFadeTowardsTheSurface) {
   MOLTEN_FLAVOUR;
   const auto s = block<Dim, Real>(corrected_scene(Dim), [](const X& x) { return x; });
   const auto naive = naive_sums(s);
-  int inverted = 0;
-  for_each_particle(s.particles, [&](std::size_t k, const auto&) {
+  int inverted = 0, plain = 0;
+  for_each_particle(s.particles, [&](std::size_t k, const auto& x) {
     Eigen::Matrix<double, Dim, Dim> L;
     for (int a = 0; a < Dim; ++a)
       for (int b = 0; b < Dim; ++b) L(a, b) = s.particles[correction].of(k)(a, b);
-    const double left = (L * naive[k].moment - L.Identity()).norm();
-    const double least = Eigen::SelfAdjointEigenSolver<decltype(L)>().computeDirect(naive[k].moment).eigenvalues()[0];
-    if (least > 0.251) {
-      EXPECT_LT(left, 20 * digits<Real>);
-      ++inverted;
-    } else if (least < 0.249) {
-      EXPECT_TRUE(L.isIdentity());
+    const double part = correction_for(naive[k]).corrected;
+    const Eigen::Matrix<double, Dim, Dim> one = L.Identity();
+    Eigen::Matrix<double, Dim, Dim> inverse = one;
+    if (part > 0) inverse = naive[k].moment.inverse();
+    EXPECT_LT((L - one - part * (inverse - one)).norm(), 20 * digits<Real>);
+    inverted += part == 1;
+    if (!well_inside<Dim>(x, (Dim == 2 ? 16 : 9) * spacing, 0.5 * spacing)) plain += part < 1;
+    if (well_inside<Dim>(x, (Dim == 2 ? 16 : 9) * spacing, s.parameters.support_radius)) {
+      EXPECT_GT(part, 0.7);  // jittered by a fifth of the spacing
     }
   });
-  EXPECT_GT(inverted, static_cast<int>(s.particles.count()) * 9 / 10);
+  EXPECT_GT(inverted, 0);
+  EXPECT_GT(plain, 0);
 }
 
 TYPED_TEST(CorrectionsOf, ShiftTowardsWhereParticlesAreFewButNotAtTheSurface) {
@@ -85,10 +95,7 @@ TYPED_TEST(CorrectionsOf, ShiftTowardsWhereParticlesAreFewButNotAtTheSurface) {
   const auto naive = naive_sums(s);
   int moved = 0, still = 0;
   for_each_particle(s.particles, [&](std::size_t k, const auto& x) {
-    SymTensor<Dim, double> m;
-    for (int a = 0; a < Dim; ++a)
-      for (int b = a; b < Dim; ++b) m(a, b) = naive[k].moment(a, b);
-    const double inner = GradientCorrection<Dim>(m).inner;
+    const double inner = correction_for(naive[k]).inner;
     const double factor = -3 * fastest * s.parameters.smoothing_length * inner;
     const double less = std::min(1.0, fastest / 2 / (std::abs(factor) * naive[k].crowding.norm() + 1e-300));
     for (int d = 0; d < Dim; ++d)
@@ -103,20 +110,21 @@ TYPED_TEST(CorrectionsOf, ShiftTowardsWhereParticlesAreFewButNotAtTheSurface) {
   EXPECT_GT(still, 0);
 }
 
-TYPED_TEST(CorrectionsOf, MakeTheDivergenceOfLinearFlowsExactEverywhere) {
-  // On a disordered block up to its very edges; without the correction it is off by tens of percent there.
+TYPED_TEST(CorrectionsOf, MakeTheDivergenceOfLinearFlowsExactButAtTheSurface) {
+  // On a disordered block; without the correction it is off by percents inside.
   MOLTEN_FLAVOUR;
   Scene scene = corrected_scene(Dim);
   scene.numerics.shifting.reset();
   auto s = block<Dim, Real>(scene, [](const X& x) { return X{2 * x[0] - x[1], x[0] + 3 * x[1], x[1]}; });
   find_rates(s);
+  const auto naive = naive_sums(s);
   int whole = 0;
   for_each_particle(s.particles, [&](std::size_t k, const auto&) {
-    if (s.particles[correction].of(k)(0, 1) == 0) return;  // ill-conditioned: a corner
+    if (correction_for(naive[k]).corrected < 1) return;
     EXPECT_NEAR(s.particles[compression_rate][0][k], -5, 300 * digits<Real>);
     ++whole;
   });
-  EXPECT_GT(whole, static_cast<int>(s.particles.count()) * 9 / 10);
+  EXPECT_GT(whole, static_cast<int>(s.particles.count()) / 4);
 }
 
 TYPED_TEST(CorrectionsOf, CarryLinearFieldsAlongWithTheShift) {
@@ -130,10 +138,11 @@ TYPED_TEST(CorrectionsOf, CarryLinearFieldsAlongWithTheShift) {
   });
   prepare(s);
   find_rates(s);
+  const auto naive = naive_sums(s);
   int inner = 0;
   for_each_particle(s.particles, [&](std::size_t k, const auto&) {
     const auto shift = s.particles[shift_velocity].of(k);
-    if (shift[0] == 0) return;
+    if (shift[0] == 0 || correction_for(naive[k]).corrected < 1) return;
     ++inner;
     EXPECT_NEAR(s.particles[acceleration][0][k], 2 * shift[1], 100 * digits<Real>);
     EXPECT_NEAR(s.particles[acceleration][1][k], -shift[0], 100 * digits<Real>);

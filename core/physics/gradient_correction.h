@@ -1,8 +1,9 @@
 // Kernel-gradient correction (Bonet & Lok 1999; [D] 5.12-5.18): ∇̃W = L_i ∇W with L_i = M_i⁻¹,
-// M_i = Σ V_j ∇W_ij ⊗ (x_j − x_i), makes gradients Σ V_j (f_j − f_i) ∇̃W exact for linear fields; the identity where M_i
-// is ill-conditioned. And for Laplacians of the form Σ V_j (f_i − f_j) W'/r: their factor is tr M_i / d, which the mean
-// of both particles' d / tr M divides out without giving up the conservation of what is exchanged. Volumes are those at
-// rest, m/ρ0: they cancel.
+// M_i = Σ V_j ∇W_ij ⊗ (x_j − x_i), makes gradients Σ V_j (f_j − f_i) ∇̃W exact for linear fields. It fades to the
+// identity at free surfaces: there the plain divergence is the one that goes with the plain pressure force (Colagrossi,
+// Antuono & Le Touzé 2009), and a corrected one feeds energy into spray until it blows up. And for Laplacians of the
+// form Σ V_j (f_i − f_j) W'/r: their factor is tr M_i / d, which the mean of both particles' d / tr M divides out
+// without giving up the conservation of what is exchanged. Volumes are those at rest, m/ρ0: they cancel.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -37,6 +38,7 @@ struct GradientMoment {
 /// What follows from the moment M of one particle.
 template <int Dim> struct GradientCorrection {
   SymTensor<Dim, double> inverse;  // L
+  double corrected = 0;            // how much of it: 1, at a free surface 0
   double laplacian = 1;            // d / tr M; towards a free surface, whose missing half is no lattice's flaw, 1
   double inner = 0;                // 1: deep in the fluid; 0: at its surface
 
@@ -51,11 +53,12 @@ template <int Dim> struct GradientCorrection {
     // spacings), at an edge about 0.3.
     inner = std::clamp((least - 0.75) / 0.2, 0.0, 1.0);
     laplacian = 1 + inner * (Dim / std::max(m.trace(), 0.5) - 1);
-    constexpr double ill_conditioned = 0.25;
-    if (!(least > ill_conditioned)) m.setIdentity();
+    // Jittered insides come down to 0.8 or so: they stay whole.
+    corrected = std::clamp((least - 0.6) / 0.2, 0.0, 1.0);
+    if (corrected == 0) m.setIdentity();
     const Eigen::Matrix<double, Dim, Dim> l = m.inverse();
     for (int a = 0; a < Dim; ++a)
-      for (int b = a; b < Dim; ++b) inverse(a, b) = l(a, b);
+      for (int b = a; b < Dim; ++b) inverse(a, b) = (a == b) + corrected * (l(a, b) - (a == b));
   }
 };
 
