@@ -82,6 +82,22 @@ TEST(SceneFile, PresetThenOverridesOfItsKeys) {
   EXPECT_FALSE(parse_scene(replaced(good, "xsph = { epsilon = 0.4 }", "xsph = false"), "s.toml").numerics.xsph);
 }
 
+TEST(SceneFile, TheDefaultPresetCorrectsSmoothFlows) {
+  const auto corrects = [](const std::vector<std::string>& overrides) {
+    const Numerics n = parse_scene(flat, "s.toml", overrides).numerics;
+    EXPECT_EQ(n.gradient_correction, n.shifting.has_value());
+    return n.gradient_correction;
+  };
+  EXPECT_FALSE(corrects({})) << "water that falls";
+  EXPECT_TRUE(corrects({"scene.gravity=[0, 0]"}));
+  EXPECT_TRUE(corrects({"fluid.rheology.viscosity=1"}));
+  EXPECT_TRUE(corrects({"scene.periodic=[\"x\"]", "scene.domain={ min = [-9, -9], max = [9, 9] }"}));
+  EXPECT_FALSE(
+      corrects({"fluid.rheology={ model = \"smd\", yield_stress = 1, consistency = 1, n = 1, jump_number = 9 }"}));
+  EXPECT_FALSE(corrects({"fluid.rheology.viscosity=1", "numerics.preset=\"basic\""}));
+  EXPECT_FALSE(corrects({"fluid.rheology.viscosity=1", "numerics.sleep={}"}));
+}
+
 TEST(SceneFile, CorrectedGradientsAndShifting) {
   const auto numerics = [](const std::string& lines) {
     return parse_scene(replaced(good, "xsph = { epsilon = 0.4 }", lines), "s.toml").numerics;

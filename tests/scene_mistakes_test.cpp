@@ -146,7 +146,7 @@ const std::vector<Mistake> mistakes = {
     // choices
     {"model = \"smd\"", "model = \"smt\"", "unknown choice \"smt\"; did you mean smd?"},
     {"kernel = \"gaussian\"", "kernel = \"wendland\"", "did you mean wendland_c2?"},
-    {"preset = \"paiva\"", "preset = \"sphysics\"", "unknown choice \"sphysics\"; known: molten, internal, paiva"},
+    {"preset = \"paiva\"", "preset = \"sphysics\"", "unknown choice \"sphysics\"; known: molten, basic, internal, paiva"},
     {"precision = \"double\"", "precision = \"half\"", "unknown choice \"half\""},
     {"periodic = [\"x\"]", "periodic = [\"w\"]", "\"w\" is no axis; this scene has x, y, z"},
     {"periodic = [\"x\"]", "periodic = [\"x\", \"x\"]", "has \"x\" twice"},

@@ -1,5 +1,6 @@
 #include "io/scene/presets.h"
 
+#include <algorithm>
 #include <numbers>
 
 namespace molten {
@@ -23,12 +24,12 @@ Numerics paiva() {
   return numerics;
 }
 
-/// For flows that fill their space (periodic, channels, cavities): what gave the least error per run time on
-/// Taylor-Green vortices (tests/physics/taylor_green_test.cpp).
+/// Corrected gradients and shifting: for smooth flows, what gives the least error per run time
+/// (tests/physics/taylor_green_test.cpp, scripts/study).
 Numerics internal() {
   Numerics numerics;
   numerics.preset = "internal";
-  numerics.smoothing_ratio = 1.7;
+  numerics.smoothing_ratio = 1.5;
   numerics.state_equation = StateEquation::linear;
   numerics.artificial_viscosity = 0;
   numerics.gradient_correction = true;
@@ -79,10 +80,32 @@ Numerics dias() {
   return numerics;
 }
 
+/// Smooth flows, by what the scene says of them: nothing falls, the fluid fills its periods, or viscosity holds it
+/// together. Else fluid splashes, or it melts and creeps, where short steps of many particles count more.
+bool flows_smoothly(const Scene& scene) {
+  const bool falls = scene.gravity != std::array<double, 3>{};
+  const bool closes = std::find(scene.periodic.begin(), scene.periodic.end(), true) != scene.periodic.end();
+  const Rheology& rheology = scene.fluid.rheology;
+  return !falls || closes || (rheology.constant() && rheology.viscosity > 0);
+}
+
+Numerics best_for(const Scene& scene) {
+  Numerics numerics = flows_smoothly(scene) ? internal() : Numerics{};
+  numerics.preset = "molten";
+  return numerics;
+}
+
+Numerics basic() {
+  Numerics numerics;
+  numerics.preset = "basic";
+  return numerics;
+}
+
 }  // namespace
 
-std::optional<Numerics> find_preset(std::string_view name) {
-  if (name == "molten") return Numerics{};
+std::optional<Numerics> find_preset(std::string_view name, const Scene& scene) {
+  if (name == "molten") return best_for(scene);
+  if (name == "basic") return basic();
   if (name == "internal") return internal();
   if (name == "queiroz") return queiroz();
   if (name == "dias") return dias();

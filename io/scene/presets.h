@@ -1,5 +1,6 @@
-// Named sets of numerics: "molten" (the best measured), "internal" (the same for flows without
-// free surfaces) and the sources' own, for replication.
+// Named sets of numerics: "basic" (no corrections: the cheapest steps), "internal" (corrected gradients and shifting),
+// "molten" (the one of these two that the study finds best for the kind of scene) and the sources' own, for
+// replication.
 #pragma once
 
 #include <optional>
@@ -9,7 +10,7 @@
 
 namespace molten {
 
-/// Empty when this version does not have the preset.
-std::optional<Numerics> find_preset(std::string_view name);
+/// Empty when this version does not have the preset. Of the scene, gravity, periodic axes and the fluid must be known.
+std::optional<Numerics> find_preset(std::string_view name, const Scene& scene = {});
 
 }  // namespace molten

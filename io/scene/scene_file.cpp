@@ -209,7 +209,7 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   scene.text = document.text;
   read_head(root, scene);
   scene.fluid = read_fluid(root, scene.dimensions);
-  scene.numerics = read_numerics(root);
+  scene.numerics = read_numerics(root, scene);
   for (const TomlReader& keys : root.tables("boundary", boundary_keys())) {
     scene.boundaries.push_back(read_boundary(keys, scene.dimensions));
     check_support(keys, scene.boundaries.back(), scene);

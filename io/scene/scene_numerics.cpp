@@ -36,12 +36,17 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "density_diffusion",
                                         "sleep"};
 
-Numerics read_preset(const TomlReader& keys) {
-  std::string name = "molten";
-  keys.choice<std::string>(
-      "preset", name,
-      {{"molten", "molten"}, {"internal", "internal"}, {"paiva", "paiva"}, {"queiroz", "queiroz"}, {"dias", "dias"}});
-  return *find_preset(name);
+Numerics read_preset(const TomlReader& keys, const Scene& scene) {
+  // What sleeps knows no corrections.
+  std::string name = keys.has("sleep") ? "basic" : "molten";
+  keys.choice<std::string>("preset", name,
+                           {{"molten", "molten"},
+                            {"basic", "basic"},
+                            {"internal", "internal"},
+                            {"paiva", "paiva"},
+                            {"queiroz", "queiroz"},
+                            {"dias", "dias"}});
+  return *find_preset(name, scene);
 }
 
 const std::vector<std::pair<std::string_view, KernelKind>> kernels = {{"gaussian", KernelKind::gaussian},
@@ -131,10 +136,9 @@ void read_seldom(const TomlReader& keys, Numerics& numerics) {
   if (keys.has("energy_surplus") && numerics.integrator != IntegratorKind::energy_bounded_euler)
     keys.fail("energy_surplus", "belongs to integrator \"energy_bounded_euler\"; leave it out");
   keys.flag("energy_surplus", numerics.energy_surplus);
-  keys.choice<ViscosityForm>("viscosity_form", numerics.viscosity_form,
-                             {{"morris", ViscosityForm::morris},
-                              {"monaghan", ViscosityForm::monaghan},
-                              {"muller", ViscosityForm::muller}});
+  keys.choice<ViscosityForm>(
+      "viscosity_form", numerics.viscosity_form,
+      {{"morris", ViscosityForm::morris}, {"monaghan", ViscosityForm::monaghan}, {"muller", ViscosityForm::muller}});
 }
 
 void read_shifting(const TomlReader& keys, Numerics& numerics) {
@@ -173,10 +177,10 @@ void read_sleep(const TomlReader& keys, Numerics& numerics) {
 
 }  // namespace
 
-Numerics read_numerics(const TomlReader& root) {
+Numerics read_numerics(const TomlReader& root, const Scene& scene) {
   const auto keys = root.table("numerics", numerics_keys);
-  if (!keys) return {};
-  Numerics numerics = read_preset(*keys);
+  if (!keys) return *find_preset("molten", scene);
+  Numerics numerics = read_preset(*keys, scene);
   read_choices(*keys, numerics);
   keys->number("smoothing_ratio", numerics.smoothing_ratio, Range{0.5, 10, true, "spacings"});
   keys->number("skin", numerics.skin, Range{0, 10, true, "spacings"});

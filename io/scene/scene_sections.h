@@ -9,6 +9,6 @@ namespace molten {
 Fluid read_fluid(const TomlReader& root, int dimensions);
 /// [[vent]] and [[outflow]].
 void read_vents(const TomlReader& root, Scene& scene);
-Numerics read_numerics(const TomlReader& root);
+Numerics read_numerics(const TomlReader& root, const Scene& scene);
 
 }  // namespace molten

@@ -23,7 +23,7 @@ Triple velocity_at(const Triple& x, double time) {
 
 template <class Real> State<2, Real> start_of(int side) {
   Scene scene = plain_scene(2);
-  scene.numerics = *find_preset("internal");
+  scene.numerics = *find_preset("internal", scene);
   scene.numerics.sound_speed = sound_speed;
   scene.fluid.density = 1;
   scene.fluid.rheology.viscosity = 1 / reynolds;
