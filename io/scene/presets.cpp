@@ -29,7 +29,7 @@ Numerics paiva() {
 Numerics internal() {
   Numerics numerics;
   numerics.preset = "internal";
-  numerics.smoothing_ratio = 1.5;
+  numerics.smoothing_ratio = 1.7;
   numerics.state_equation = StateEquation::linear;
   numerics.artificial_viscosity = 0;
   numerics.gradient_correction = true;
@@ -89,8 +89,19 @@ bool flows_smoothly(const Scene& scene) {
   return !falls || closes || (rheology.constant() && rheology.viscosity > 0);
 }
 
+/// Heat in a body at rest: nothing sets it in motion.
+bool only_conducts(const Scene& scene) {
+  const bool moves = std::any_of(scene.fluid.bodies.begin(), scene.fluid.bodies.end(),
+                                 [](const Body& b) { return b.velocity != std::array<double, 3>{}; });
+  return scene.fluid.heat && scene.gravity == std::array<double, 3>{} && !moves && scene.vents.empty();
+}
+
 Numerics best_for(const Scene& scene) {
-  Numerics numerics = flows_smoothly(scene) ? internal() : Numerics{};
+  Numerics numerics;
+  if (only_conducts(scene))
+    numerics.gradient_correction = true;
+  else if (flows_smoothly(scene))
+    numerics = internal();
   numerics.preset = "molten";
   return numerics;
 }
