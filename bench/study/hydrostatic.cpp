@@ -11,12 +11,13 @@ namespace molten::study {
 
 namespace {
 
-constexpr double gravity = 9.81, density = 1000, depth = 1;  // m/s², kg/m³, m
+constexpr double gravity = 9.81, density = 1000, depth = 1;      // m/s², kg/m³, m
+const double sound_speed = 10 * std::sqrt(2 * gravity * depth);  // m/s
 
 /// Pressure y above the lowest point of a column whose weight is that of `depth` uncompressed, for sound of speed c:
 /// p' = −ρ g with p = c²(ρ − ρ0). (With Tait the difference is of second order in gH/c².)
-double pressure_at_rest(double y, double sound_speed) {
-  const double c2 = sound_speed * sound_speed, squeeze = gravity * depth / c2;
+double pressure_at_rest(double y, double c) {
+  const double c2 = c * c, squeeze = gravity * depth / c2;
   return c2 * density * std::expm1(std::log1p(squeeze) - gravity * y / c2);
 }
 
@@ -54,8 +55,17 @@ void judge_rest(const Request& r, Report& report, const Setup& s, int up, double
   report.judge("kinetic_energy", energy / samples / potential);
 }
 
+/// Walls that the fluid rests on. At 1.3 spacings, the default, a square lattice buckles under its own weight, and the
+/// pressure's gradient on it is 2.6 % short; at 1.5 it stays, and the gradient is within 0.3 %.
+std::string numerics_text() { return sound_speed_text(sound_speed) + wall_support_text() + "smoothing_ratio = 1.5\n"; }
+
+/// Squeezes a column that is `depth` high uncompressed so that it carries its own weight.
 void start_at_rest(Setup& s, int up) {
-  for (const Triple& x : s.start.position) s.pressure.push_back(density * gravity * (depth - x[up]));
+  const double squeeze = gravity / (sound_speed * sound_speed);  // 1/m
+  for (Triple& x : s.start.position) {
+    x[up] = -std::log1p(-squeeze * x[up] / (1 + squeeze * depth)) / squeeze;
+    s.pressure.push_back(pressure_at_rest(x[up], sound_speed));
+  }
 }
 
 void run_box(const Request& r, Report& report) {
@@ -65,8 +75,7 @@ void run_box(const Request& r, Report& report) {
   Triple fluid{width, width, width}, tank = fluid, g{};
   fluid[up] = depth, tank[up] = 2 * depth, g[up] = -gravity;
   Setup s;
-  s.scene = scene_head(dimensions, g) + fluid_text(dimensions, spacing, density) + "[numerics]\n" +
-            wall_support_text() +
+  s.scene = scene_head(dimensions, g) + fluid_text(dimensions, spacing, density) + numerics_text() +
             fmt::format("[[boundary]]\nbox = {}\ninside = true\nslip = 1\n", box_text(dimensions, {}, tank));
   s.start = lattice(dimensions, {}, fluid, spacing);
   start_at_rest(s, up);
@@ -76,7 +85,7 @@ void run_box(const Request& r, Report& report) {
 void run_bowl(const Request& r, Report& report) {
   const double spacing = depth / static_cast<double>(r.size);
   Setup s;
-  s.scene = scene_head(3, {0, 0, -gravity}) + fluid_text(3, spacing, density) + "[numerics]\n" + wall_support_text() +
+  s.scene = scene_head(3, {0, 0, -gravity}) + fluid_text(3, spacing, density) + numerics_text() +
             fmt::format("[[boundary]]\nsphere = {{ center = [0, 0, {}], radius = {} }}\ninside = true\nslip = 1\n",
                         depth, depth);
   const Start block = lattice(3, {-depth, -depth, 0}, {depth, depth, depth}, spacing);
