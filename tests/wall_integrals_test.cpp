@@ -138,6 +138,44 @@ TEST(WallIntegrals, InsideARoundedMeshOfManyTriangles) {
   }
 }
 
+TEST(WallIntegrals, ManySmallFacetsCountAsTheWallThatTheyMake) {
+  Shape shape;
+  shape.sphere = Sphere{{0, 0, 0}, 20};
+  const std::vector<Wall<3>> many{container(shape, 0.5)}, few{container(shape, 1.5)};
+  const auto fine = integrals_of(many), coarse = integrals_of(few);
+  ASSERT_GT(many[0].facets.size(), 8 * few[0].facets.size());
+  for (const double depth : {0.3, 0.5, 0.9, 1.5, 2.2})
+    for (const Point<3>& way : {Point<3>(0, 0, -1), Point<3>(0.6, 0.8, 0), Point<3>(0.48, 0.6, 0.64)}) {
+      int visited = 0;
+      const Point<3> x = (20 - depth) * way;
+      const auto as_sphere = [](Point<3> y) { return y.norm() > 20; };
+      const auto ours = sum(fine, x), theirs = sum(coarse, x), twin = brute<3>(x, as_sphere, 130);
+      EXPECT_NEAR(ours.hidden, theirs.hidden, 0.005) << depth;
+      EXPECT_NEAR(ours.hidden, twin.hidden, 0.003) << depth;
+      EXPECT_LT((ours.gradient - twin.gradient).norm(), 0.003) << depth;
+      fine.visit(x, [&](const WallPatch<3>& patch) {
+        ++visited;
+        EXPECT_NEAR(patch.normal.dot(way), -1, 1e-4);
+        EXPECT_NEAR(patch.distance, depth, 0.05);
+        EXPECT_NEAR(patch.across.trace(), patch.hidden, 1e-12);
+      });
+      EXPECT_EQ(visited, 1) << depth;
+    }
+}
+
+TEST(WallIntegrals, ManySmallSegmentsCountAsTheWallThatTheyMake) {
+  std::vector<Point<2>> corners;
+  for (int k = 0; k <= 400; ++k) corners.emplace_back(-20 + 0.1 * k, 1e-6 * (k % 3));
+  Wall<2> chain = loop(corners);
+  chain.facets.pop_back();  // open
+  const auto many = integrals_of<2>({chain}), one = integrals_of<2>({loop({{-20, 0}, {20, 0}, {20, 30}, {-20, 30}})});
+  for (const double depth : {0.1, 0.3, 0.65, 1.3, 2.4}) {
+    const auto a = sum(many, {0.03, depth}), b = sum(one, {0.03, depth});
+    EXPECT_NEAR(a.hidden, b.hidden, 2e-3) << depth;
+    EXPECT_LT((a.gradient - b.gradient).norm(), 2e-3) << depth;
+  }
+}
+
 TEST(WallIntegrals, AClosedSurfaceHidesAllOfItsInside) {
   Shape shape;
   shape.sphere = Sphere{{0, 0, 0}, 1};
@@ -158,13 +196,13 @@ TEST(WallIntegrals, TheShortWayIsTheLongOne) {
     const Point<3> x(5, 4.3, d);
     const std::int32_t plane = walls.plane_near(x, reach);
     ASSERT_GE(plane, 0);
-    const WallPatch<3> quick = walls.at_plane(plane, x);
+    const WallPiece<3> quick = walls.at_plane(plane, x);
     int visited = 0;
     walls.visit(x, [&](const WallPatch<3>& exact) {
       ++visited;
       EXPECT_NEAR(quick.weight, exact.weight, 1e-5);
       EXPECT_NEAR(quick.hidden, exact.hidden, 1e-5);
-      EXPECT_LT((quick.centroid - exact.centroid).norm(), 1e-4);
+      EXPECT_LT((-quick.distance * quick.normal - exact.centroid).norm(), 1e-4);
     });
     EXPECT_EQ(visited, 1);
   }

@@ -3,44 +3,19 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
-#include <utility>
 
-#include "core/kernel.h"
+#include "core/boundary/gauss.h"
 
 namespace molten {
 namespace {
 
-constexpr std::size_t table_size = 2048;  // linear interpolation is then good to 1e-6
-constexpr double same_direction = 1e-9;   // sine of the angle up to which facets that share an edge lie in one plane
-constexpr double small_facet = 0.3;       // radius over distance, up to which three points do
-constexpr double plane_size = 1e6;        // half of it, in support radii: what stands for infinite
+constexpr double same_direction = 1e-9;  // sine of the angle up to which facets that share an edge lie in one plane
+constexpr double clump_radius = 0.2;   // support radii; facets larger than this are alone
+constexpr double small_part = 0.4;       // radius over distance, up to which moments do
+constexpr double least_scale = 0.124;    // of the parts that a facet is cut in; nearer, it is integrated
+constexpr double plane_size = 1e6;       // half of it, in support radii: what stands for infinite
 
-/// Gauss-Legendre quadrature on [−1, 1].
-template <int n> struct Gauss {
-  std::array<double, n> node, weight;
-
-  Gauss() {
-    for (int k = 0; k < n; ++k) {
-      double x = std::cos(std::numbers::pi * (k + 0.75) / (n + 0.5)), slope = 1;
-      for (int round = 0; round < 20; ++round) {  // Newton on P_n
-        double p = x, before = 1;
-        for (int m = 2; m <= n; ++m) before = std::exchange(p, ((2 * m - 1) * x * p - (m - 1) * before) / m);
-        slope = n * (x * p - before) / (x * x - 1);
-        x -= p / slope;
-      }
-      node[k] = x;
-      weight[k] = 2 / ((1 - x * x) * slope * slope);
-    }
-  }
-  /// ∫_a^b f
-  template <class F> double operator()(double a, double b, F&& f) const {
-    double sum = 0;
-    for (int k = 0; k < n; ++k) sum += weight[k] * f((a + b) / 2 + (b - a) / 2 * node[k]);
-    return sum * (b - a) / 2;
-  }
-};
 const Gauss<6> coarse;
 const Gauss<16> fine;
 
@@ -58,103 +33,175 @@ bool clip(double half2, double t0, double t1, double& from, double& to) {
 
 double distance_to_segment(double p, double t0, double t1) { return std::hypot(p, t0 > 0 ? t0 : t1 < 0 ? t1 : 0); }
 
+template <int Dim> Turn<Dim> square(const Point<Dim>& v) { return v * v.transpose(); }
+
+/// What a small piece of the size 1 adds, by its moments `spread` about its centre, which is at y: ∫ W dS, ∫ W y dS and
+/// ∫ H dS.
+template <int Dim> struct SmallPiece {
+  double weight, hidden;
+  Point<Dim> moment;
+
+  [[gnu::always_inline]] SmallPiece(const RadialIntegrals& radial, const Turn<Dim>& spread, const Point<Dim>& y,
+                                    double distance2) {
+    const KernelBeyond at = radial.around(std::sqrt(distance2));
+    const Point<Dim> across = spread * y;
+    const double all = 0.5 * spread.trace(), along = 0.5 * across.dot(y) / distance2;
+    weight = at.kernel + at.slope * all + (at.curvature - at.slope) * along;
+    hidden = at.hidden + at.hidden_slope * all + (at.hidden_curvature - at.hidden_slope) * along;
+    moment = weight * y + at.slope * across;
+  }
+};
+
 }  // namespace
 
-RadialIntegrals::RadialIntegrals(KernelKind kind, int dim, double smoothing_length)
-    : reach_(kernel_reach(kind) * smoothing_length), per_entry_(table_size / reach_) {
-  const std::size_t n = table_size;
-  const double step = reach_ / n;
-  kernel_.resize(n + 1, 0);
-  with_kernel<double>(kind, dim, smoothing_length, 1, [&](const auto& kernel) {
-    for (std::size_t k = 0; k < n; ++k) kernel_[k] = kernel(Lanes<double, 1>(k * step)).w.v;
-  });
-  // From the support inwards; W is linear between the entries, which makes the sums exact to second order.
-  weight_beyond_.assign(n + 1, 0);
-  volume_beyond_.assign(n + 1, 0);  // ∫_r^R W s² ds
-  const auto integral = [&](std::size_t k, auto&& f) { return coarse(k * step, (k + 1) * step, f); };
-  for (std::size_t k = n; k-- > 0;) {
-    weight_beyond_[k] = weight_beyond_[k + 1] + integral(k, [&](double s) { return at(kernel_, s) * s; });
-    volume_beyond_[k] = volume_beyond_[k + 1] + integral(k, [&](double s) { return at(kernel_, s) * s * s; });
-  }
-  plane_weight_.assign(n + 1, 0);
-  plane_hidden_.assign(n + 1, 0);
-  if (dim == 2)
-    fill_planes_2d();
-  else
-    fill_planes_3d();
-}
+// ---- building
+// ---------------------------------------------------------------------------------------------------------
 
-void RadialIntegrals::fill_planes_3d() {
-  const std::size_t n = table_size;
-  const double step = reach_ / n;
-  Table beyond(n + 1, 0);  // ∫_r^R H s ds; H s = s^−2 ∫_s^R W
-  hidden_beyond_.assign(n + 1, 0);
-  for (std::size_t k = n; k-- > 1;) {
-    const auto slope = [&](double s) { return at(volume_beyond_, s) / (s * s); };
-    beyond[k] = beyond[k + 1] + coarse(k * step, (k + 1) * step, slope);
-    hidden_beyond_[k] = k * step * beyond[k];
-  }
-  hidden_beyond_[0] = volume_beyond_[0];  // the limit
-  for (std::size_t k = 0; k < n; ++k) {
-    plane_weight_[k] = 2 * std::numbers::pi * weight_beyond_[k];
-    plane_hidden_[k] = 2 * std::numbers::pi * hidden_beyond_[k];
-  }
-}
+/// Sorts facets into planes and clumps.
+template <int Dim> class WallIntegrals<Dim>::Builder {
+ public:
+  Builder(WallIntegrals& to, const WallSurface<Dim>& surface)
+      : to_(to), surface_(surface), facets_(surface.facets()), most_(clump_radius * to.reach()) {}
 
-void RadialIntegrals::fill_planes_2d() {
-  const std::size_t n = table_size;
-  for (std::size_t k = 0; k < n; ++k) {
-    const double d = k / per_entry_, half = std::sqrt(reach_ * reach_ - d * d);
-    plane_weight_[k] = 2 * fine(0, half, [&](double t) { return at(kernel_, std::hypot(d, t)); });
-    plane_hidden_[k] =
-        2 * fine(0, std::acos(d / reach_), [&](double a) { return at(weight_beyond_, d / std::cos(a)); });
+  void run() {
+    const auto n = static_cast<std::int32_t>(facets_.size());
+    find_planes();
+    clump_.assign(facets_.size(), -1);
+    for (std::int32_t f = 0; f < n; ++f)
+      if (clump_[f] < 0 && has_area(f)) grow(f);
+    std::vector<Facet<Dim>> listed;
+    double margin = 0;
+    for (const auto& members : members_) {
+      const Clump& clump = add_clump(members);
+      const bool alone = members.size() == 1;
+      listed.push_back(facets_[members[0]]);
+      if (alone) continue;
+      listed.back().corner.fill(clump.centre);
+      margin = std::max(margin, clump.radius);
+    }
+    to_.grid_ = FacetGrid<Dim>(listed, to_.reach() + margin, to_.reach());
   }
-}
+
+ private:
+  bool has_area(std::int32_t f) const { return !facets_[f].normal.isZero(0); }  // without, a facet hides nothing
+
+  Point<Dim> centre(std::int32_t f) const {
+    Point<Dim> sum = Point<Dim>::Zero();
+    for (const auto& c : facets_[f].corner) sum += c;
+    return sum / Dim;
+  }
+  double furthest(std::int32_t f, const Point<Dim>& from) const {
+    double r = 0;
+    for (const auto& c : facets_[f].corner) r = std::max(r, (c - from).norm());
+    return r;
+  }
+  bool is_small(std::int32_t f) const { return furthest(f, centre(f)) <= most_; }
+
+  /// The facet across side k, −1 if there is none.
+  std::int32_t neighbour(std::int32_t f, int k) const {
+    if constexpr (Dim == 3) {
+      return surface_.neighbour(f, k);
+    } else {
+      const std::int32_t g = k == 0 ? f - 1 : f + 1;
+      if (k > 1 || g < 0 || g >= static_cast<std::int32_t>(facets_.size())) return -1;
+      return facets_[f].corner[k] == facets_[g].corner[1 - k] ? g : -1;
+    }
+  }
+  bool coplanar(std::int32_t f, std::int32_t g) const {
+    return Dim == 3 && g >= 0 && surface_.wall(f) == surface_.wall(g) &&
+           (facets_[f].normal - facets_[g].normal).squaredNorm() < same_direction * same_direction;
+  }
+
+  void find_planes() {
+    const auto n = static_cast<std::int32_t>(facets_.size());
+    std::vector<std::int32_t> root(facets_.size());
+    std::iota(root.begin(), root.end(), 0);
+    const auto root_of = [&](std::int32_t f) {
+      while (root[f] != f) f = root[f] = root[root[f]];
+      return f;
+    };
+    for (std::int32_t f = 0; f < n; ++f)
+      for (int k = 0; k < 3; ++k)
+        if (const std::int32_t g = neighbour(f, k); coplanar(f, g))
+          root[std::max(root_of(f), root_of(g))] = std::min(root_of(f), root_of(g));
+    plane_.resize(facets_.size());
+    for (std::int32_t f = 0; f < n; ++f) {  // a root comes before what it is the root of
+      const std::int32_t r = root_of(f);
+      if (r == f) {
+        plane_[f] = static_cast<std::int32_t>(to_.planes_.size());
+        to_.planes_.push_back({facets_[f].normal, facets_[f].normal.dot(facets_[f].corner[0]), surface_.wall(f)});
+      }
+      plane_[f] = plane_[r];
+    }
+  }
+
+  void grow(std::int32_t seed) {
+    const auto number = static_cast<std::int32_t>(members_.size());
+    const Point<Dim> middle = centre(seed);
+    std::vector<std::int32_t>& members = members_.emplace_back(1, seed);
+    clump_[seed] = number;
+    if (!is_small(seed)) return;
+    for (std::size_t m = 0; m < members.size(); ++m)
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t g = neighbour(members[m], k);
+        if (g < 0 || clump_[g] >= 0 || !has_area(g) || surface_.wall(g) != surface_.wall(seed)) continue;
+        if (facets_[g].normal.dot(facets_[seed].normal) < 0.95 || furthest(g, middle) > most_) continue;
+        clump_[g] = number;
+        members.push_back(g);
+      }
+  }
+
+  const Clump& add_clump(const std::vector<std::int32_t>& members) {
+    Clump c{};
+    c.sheets_begin = static_cast<std::uint32_t>(to_.sheets_.size());
+    c.whole = true;
+    Point<Dim> normal = Point<Dim>::Zero();
+    c.centre = normal;
+    for (const std::int32_t f : members) {
+      std::vector<bool> inner(Dim == 3 ? 3 : 1, false), cancels = inner;
+      for (std::size_t k = 0; k < 3 && Dim == 3; ++k) {
+        const std::int32_t g = neighbour(f, static_cast<int>(k));
+        inner[k] = coplanar(f, g);
+        cancels[k] = inner[k] && (clump_[f] == clump_[g] || (!is_small(f) && !is_small(g)));
+        if (cancels[k] && clump_[f] != clump_[g]) c.whole = false;
+      }
+      to_.add_sheet({facets_[f].corner.begin(), facets_[f].corner.end()}, inner, cancels, plane_[f]);
+      const Sheet& sheet = to_.sheets_.back();
+      c.size += sheet.size;
+      c.centre += sheet.size * sheet.centre;
+      normal += sheet.size * sheet.normal;
+    }
+    c.sheets_end = static_cast<std::uint32_t>(to_.sheets_.size());
+    c.centre /= c.size;
+    c.area = normal.norm();
+    c.normal = normal / c.area;
+    c.spread.setZero();
+    for (std::uint32_t k = c.sheets_begin; k < c.sheets_end; ++k) {
+      const Sheet& sheet = to_.sheets_[k];
+      const Point<Dim> aside = sheet.centre - c.centre;
+      c.bulge += sheet.size * sheet.normal.dot(aside);
+      c.spread += sheet.size / c.size * (sheet.spread + square<Dim>(aside));
+    }
+    for (const std::int32_t f : members) c.radius = std::max(c.radius, furthest(f, c.centre));
+    to_.clumps_.push_back(c);
+    return to_.clumps_.back();
+  }
+
+  WallIntegrals& to_;
+  const WallSurface<Dim>& surface_;
+  const std::vector<Facet<Dim>>& facets_;
+  double most_;                                     // m
+  std::vector<std::int32_t> plane_, clump_;         // by facet
+  std::vector<std::vector<std::int32_t>> members_;  // of the clumps
+};
 
 template <int Dim>
 WallIntegrals<Dim>::WallIntegrals(const std::vector<Wall<Dim>>& walls, const WallSurface<Dim>& surface,
                                   KernelKind kernel, double smoothing_length)
     : radial_(kernel, Dim, smoothing_length) {
-  add_facets(surface);
+  Builder(*this, surface).run();
   facets_ = sheets_.size();
   add_planes(walls);
-}
-
-/// Facets that share an edge and a plane become neighbours in the list, so that they are summed as one.
-template <int Dim> void WallIntegrals<Dim>::add_facets(const WallSurface<Dim>& surface) {
-  const auto& facets = surface.facets();
-  const auto n = static_cast<std::int32_t>(facets.size());
-  std::vector<std::int32_t> root(n);
-  std::iota(root.begin(), root.end(), 0);
-  const auto root_of = [&](std::int32_t f) {
-    while (root[f] != f) f = root[f] = root[root[f]];
-    return f;
-  };
-  const auto coplanar = [&](std::int32_t f, std::int32_t g) {
-    return g >= 0 && surface.wall(f) == surface.wall(g) &&
-           (facets[f].normal - facets[g].normal).squaredNorm() < same_direction * same_direction;
-  };
-  for (std::int32_t f = 0; f < n && Dim == 3; ++f)
-    for (int k = 0; k < 3; ++k)
-      if (const std::int32_t g = surface.neighbour(f, k); coplanar(f, g))
-        root[std::max(root_of(f), root_of(g))] = std::min(root_of(f), root_of(g));
-  std::vector<std::int32_t> order;
-  for (std::int32_t f = 0; f < n; ++f)
-    if (!facets[f].normal.isZero(0)) order.push_back(f);  // without area: hides nothing
-  std::stable_sort(order.begin(), order.end(), [&](auto f, auto g) { return root_of(f) < root_of(g); });
-  std::vector<Facet<Dim>> sorted;
-  std::int32_t last = no_plane;
-  for (const std::int32_t f : order) {
-    if (root_of(f) != last) {
-      last = root_of(f);
-      planes_.push_back({facets[f].normal, facets[f].normal.dot(facets[f].corner[0]), surface.wall(f)});
-    }
-    std::vector<bool> inner(Dim == 3 ? 3 : 1, false);
-    for (int k = 0; k < 3 && Dim == 3; ++k) inner[k] = coplanar(f, surface.neighbour(f, k));
-    add_sheet({facets[f].corner.begin(), facets[f].corner.end()}, inner, static_cast<std::int32_t>(planes_.size()) - 1);
-    sorted.push_back(facets[f]);
-  }
-  grid_ = FacetGrid<Dim>(sorted, reach(), reach());
 }
 
 /// The corners of the part of a convex polygon (2-D: a segment) in front of a plane.
@@ -191,51 +238,106 @@ template <int Dim> void WallIntegrals<Dim>::add_planes(const std::vector<Wall<Di
     }
     if (corners.size() < Dim) continue;
     planes_.push_back({n, n.dot(middle), static_cast<std::int32_t>(w)});
-    add_sheet(corners, std::vector<bool>(corners.size(), false), static_cast<std::int32_t>(planes_.size()) - 1);
+    const std::vector<bool> none(corners.size(), false);
+    add_sheet(corners, none, none, static_cast<std::int32_t>(planes_.size()) - 1);
   }
 }
 
 template <int Dim>
 void WallIntegrals<Dim>::add_sheet(const std::vector<Point<Dim>>& corners, const std::vector<bool>& inner,
-                                   std::int32_t plane) {
+                                   const std::vector<bool>& cancels, std::int32_t plane) {
   const Point<Dim>& n = planes_[plane].normal;
-  Sheet sheet{n, Point<Dim>::Zero(), 0, static_cast<std::uint32_t>(edges_.size()), 0, plane, 0};
+  Sheet sheet{n, Point<Dim>::Zero(), 0, static_cast<std::uint32_t>(edges_.size()), 0, plane, 0, Turn<Dim>::Zero()};
   for (const auto& c : corners) sheet.centre += c / static_cast<double>(corners.size());
-  for (const auto& c : corners) sheet.radius = std::max(sheet.radius, (c - sheet.centre).norm());
+  for (const auto& c : corners) {
+    sheet.radius = std::max(sheet.radius, (c - sheet.centre).norm());
+    sheet.spread += square<Dim>(c - sheet.centre) / (Dim * (Dim + 1));
+  }
   const std::size_t edges = Dim == 3 ? corners.size() : 1;
   for (std::size_t k = 0; k < edges; ++k) {
     const Point<Dim> e = corners[(k + 1) % corners.size()] - corners[k];
-    Edge edge{corners[k], e.normalized(), Point<Dim>::Zero(), e.norm(), inner[k]};
+    Edge edge{corners[k], e.normalized(), Point<Dim>::Zero(), e.norm(), inner[k], cancels[k]};
     if constexpr (Dim == 3) edge.outward = edge.along.cross(n);
     if (edge.length > 0) edges_.push_back(edge);
   }
   sheet.edges_end = static_cast<std::uint32_t>(edges_.size());
   if constexpr (Dim == 3)
-    if (sheet.edges_end - sheet.edges_begin == 3 && std::count(inner.begin(), inner.end(), true) == 0)
-      sheet.area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+    sheet.size = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+  else
+    sheet.size = (corners[1] - corners[0]).norm();
   sheets_.push_back(sheet);
 }
 
-/// A triangle that is small for its distance: the three-point rule of second degree.
+// ---- summing
+// ----------------------------------------------------------------------------------------------------------
+
+template <int Dim> void WallIntegrals<Dim>::add(PatchSums<Dim>& sums, const Clump& clump, const Point<Dim>& x) const {
+  const Point<Dim> y = clump.centre - x;
+  const double far = clump.radius + reach(), distance2 = y.squaredNorm();
+  if (distance2 > far * far) return;
+  const bool seen_whole = clump.whole && clump.radius * clump.radius < small_part * small_part * distance2;
+  if (!seen_whole) {
+    for (std::uint32_t k = clump.sheets_begin; k < clump.sheets_end; ++k) add(sums, sheets_[k], clump.whole, x);
+    return;
+  }
+  const SmallPiece<Dim> piece(radial_, clump.spread, y, distance2);
+  const double height = -clump.area * clump.normal.dot(y) - clump.bulge;  // ∫ n·(x − y) dS
+  const std::int32_t wall = planes_[sheets_[clump.sheets_begin].plane].wall;
+  sums.of(clump.normal, height > 0, wall)
+      .add(clump.normal, clump.area * piece.weight, clump.area * piece.moment, height * piece.hidden);
+}
+
 template <int Dim>
-void WallIntegrals<Dim>::add_small(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const {
-  for (std::uint32_t k = sheet.edges_begin; k < sheet.edges_end; ++k) {
-    const Point<Dim> y = (sheet.centre + edges_[k].start) / 2 - x;
-    const double r = y.norm(), weight = sheet.area / 3 * radial_.kernel(r);
-    sum.weight += weight;
-    sum.moment += weight * (y + d * sheet.normal);
-    sum.hidden += sheet.area / 3 * d * radial_.hidden_per_height(r);
+void WallIntegrals<Dim>::add(PatchSums<Dim>& sums, const Sheet& sheet, bool whole, const Point<Dim>& x) const {
+  const double far = sheet.radius + reach(), distance2 = (sheet.centre - x).squaredNorm();
+  if (distance2 > far * far) return;
+  const Plane& plane = planes_[sheet.plane];
+  const double d = plane.normal.dot(x) - plane.offset;
+  if (!(std::abs(d) < reach())) return;
+  Sum sum;
+  const double nearest = std::max(std::abs(d), std::sqrt(distance2) - sheet.radius);
+  if (whole && sheet.radius < 0.5 * reach() && sheet.radius * least_scale < small_part * nearest) {
+    add_part(sum, sheet, sheet.centre, 1, x);
+    sum.hidden *= d;
+  } else {
+    add_exact(sum, sheet, x, d);
+    sum.moment -= d * sum.weight * sheet.normal;
+  }
+  sums.of(sheet.normal, d > 0, plane.wall).add(sheet.normal, sum.weight, sum.moment, sum.hidden);
+}
+
+/// A part of a facet, `scale` times as large (and turned by half a turn if that is negative): cut in 2^(d−1) like it
+/// until they are small for their distance. What is hidden comes a height.
+template <int Dim>
+void WallIntegrals<Dim>::add_part(Sum& sum, const Sheet& sheet, const Point<Dim>& centre, double scale,
+                                  const Point<Dim>& x) const {
+  const Point<Dim> y = centre - x;
+  const double radius = sheet.radius * std::abs(scale), far = radius + reach(), distance2 = y.squaredNorm();
+  if (distance2 > far * far) return;
+  if (radius * radius < small_part * small_part * distance2) {
+    const SmallPiece<Dim> piece(radial_, scale * scale * sheet.spread, y, distance2);
+    const double size = sheet.size * (Dim == 3 ? scale * scale : std::abs(scale));
+    sum.weight += size * piece.weight;
+    sum.moment += size * piece.moment;
+    sum.hidden += size * piece.hidden;
+    return;
+  }
+  if constexpr (Dim == 2) {
+    const Edge& e = edges_[sheet.edges_begin];
+    const Point<2> half = scale * e.length / 4 * e.along;
+    add_part(sum, sheet, centre - half, scale / 2, x);
+    add_part(sum, sheet, centre + half, scale / 2, x);
+  } else {
+    add_part(sum, sheet, centre, -scale / 2, x);
+    for (std::uint32_t k = sheet.edges_begin; k < sheet.edges_end; ++k)
+      add_part(sum, sheet, centre + scale / 2 * (edges_[k].start - sheet.centre), scale / 2, x);
   }
 }
 
-template <int Dim> void WallIntegrals<Dim>::add(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const {
+template <int Dim>
+void WallIntegrals<Dim>::add_exact(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const {
   const double least = 1e-6 * reach(), height = std::abs(d) < least ? std::copysign(least, d) : d;
   const double radius2 = reach() * reach() - height * height;  // of the disc that the support cuts out of the plane
-  const double far = sheet.radius + reach();
-  const double distance2 = (sheet.centre - x).squaredNorm();
-  if (distance2 > far * far) return;
-  if (sheet.area > 0 && sheet.radius * sheet.radius < small_facet * small_facet * distance2)
-    return add_small(sum, sheet, x, d);
   const Point<Dim> foot = x - d * sheet.normal;
   const auto at_foot = std::abs(height);
   if constexpr (Dim == 2) {
@@ -263,7 +365,7 @@ template <int Dim> void WallIntegrals<Dim>::add(Sum& sum, const Sheet& sheet, co
         sum.hidden += height * hidden * angle;
         continue;
       }
-      if (e.inner) continue;  // what the facet beyond the edge adds cancels
+      if (e.cancels) continue;
       const double angle = (t0 < from ? angle_of(p, t0, from) : 0) + (to < t1 ? angle_of(p, to, t1) : 0);
       double inside_weight = 0, inside_hidden = 0, edge_weight = 0;
       const auto integrate = [&](const auto& rule) {
@@ -285,10 +387,6 @@ template <int Dim> void WallIntegrals<Dim>::add(Sum& sum, const Sheet& sheet, co
       sum.moment -= edge_weight * e.outward;
     }
   }
-}
-
-template <int Dim> WallPatch<Dim> WallIntegrals<Dim>::patch_of(const Sum& sum, const Plane& plane, double d) const {
-  return {plane.normal, sum.moment / sum.weight - d * plane.normal, sum.weight, sum.hidden, d, plane.wall};
 }
 
 template <int Dim>
@@ -323,15 +421,20 @@ template <int Dim> std::int32_t WallIntegrals<Dim>::plane_near(const Point<Dim>&
   };
   const Point<Dim> span = Point<Dim>::Constant(reach);
   grid_.visit_box(x - span, x + span, [&](std::span<const std::int32_t> near) {
-    for (const std::int32_t k : near) look(sheets_[k]);
+    for (std::size_t n = 0; n < near.size() && found != many_planes; ++n) {
+      const Clump& clump = clumps_[near[n]];
+      const double gap = reach + clump.radius;
+      if ((clump.centre - x).squaredNorm() > gap * gap) continue;
+      for (std::uint32_t k = clump.sheets_begin; k < clump.sheets_end; ++k) look(sheets_[k]);
+    }
   });
   for (std::size_t k = facets_; k < sheets_.size(); ++k) look(sheets_[k]);
   return found;
 }
 
 template <int Dim> std::size_t WallIntegrals<Dim>::bytes() const {
-  return grid_.bytes() + sheets_.capacity() * sizeof(Sheet) + edges_.capacity() * sizeof(Edge) +
-         planes_.capacity() * sizeof(Plane);
+  return grid_.bytes() + clumps_.capacity() * sizeof(Clump) + sheets_.capacity() * sizeof(Sheet) +
+         edges_.capacity() * sizeof(Edge) + planes_.capacity() * sizeof(Plane);
 }
 
 template class WallIntegrals<2>;

@@ -1,14 +1,13 @@
 // The walls' share of a pair pass. A piece s of a wall goes through the terms as one neighbour behind its plane, with
 // ∫_solid ∇W dV = −∫_s W n dS (Gauss; Chiron et al. 2019) in the place of V_j ∇W_ij and the values of the fluid at the
-// wall. With h_s = ∫_solid W dV behind the piece and y_s the centroid of W over it, from the particle:
-// - Pressure: what a mirrored hydrostatic fluid behind the wall gives, p_s = p_i + ρ g·(y_s − n h_s/∫_s W dS), exact
-// for
-//   pressures linear along n.
+// wall. With h = ∫_solid W dV behind a facet and y from the particle:
+// - Pressure: p_i, and what a mirrored hydrostatic fluid behind the wall adds, Σ n (∫ W g·y dS − h g·n) over the
+//   facets: exact for pressures linear along n.
 // - Continuity: the mirrored velocity, so twice (v_i − v_wall)·n. These two are each other's adjoint, so that walls do
 //   not feed sound waves: with the renormalised form of Ferrand et al. 2013, which is not, a tank at rest keeps 300
 //   times the kinetic energy, and without density diffusion it does not come to rest at all.
 // - Along the wall a particle misses the part h of its support: its acceleration is multiplied by
-//   (1 − Σ h_s (1 − n n))^−1. Sums for temperature and strain rate are divided by 1 − Σ h_s (Ferrand et al. 2013),
+//   (1 − Σ h (1 − n n))^−1. Sums for temperature and strain rate are divided by 1 − Σ h (Ferrand et al. 2013),
 //   which makes them exact for linear fields, and the viscous and heat fluxes for quadratic ones, at a plane.
 #pragma once
 
@@ -26,20 +25,23 @@ constexpr double most_hidden = 0.9;  // in a cleft that hardly leaves room to th
 
 /// A piece of a wall as the neighbour of the particles in the lanes of L.
 template <int Dim, class L> struct WallNeighbour {
-  Vec<Dim, L> normal, there;  // there: where p_s is hydrostatic, from the particle, m
-  Vec<Dim, L> centroid;       // of W over the piece, from the particle, m
-  L reach, weight, hidden;    // m, 1/m, 1; reach: of the neighbour, straight along the normal
+  Vec<Dim, L> normal;
+  Vec<Dim, L> pull;          // by the hydrostatic part of p_s, m/s²
+  SymTensor<Dim, L> moment;  // of ∫_s n ⊗ W y dS, the symmetric part
+  L reach, weight, hidden;   // m, 1/m, 1; reach: of the neighbour, straight along the normal
 };
 
-template <int Dim, class Real> WallNeighbour<Dim, Lanes<Real, 1>> neighbour_of(const WallPatch<Dim>& patch) {
+template <int Dim, class Real>
+WallNeighbour<Dim, Lanes<Real, 1>> neighbour_of(const WallPatch<Dim>& patch, const Point<Dim>& gravity) {
   using L = Lanes<Real, 1>;
   // Further off where the piece is aside: fluxes go by the slope along the normal, (n · y)/y² for a piece at y.
   const double aside = patch.centroid.norm();
+  const Point<Dim> pull = (patch.moment - patch.across) * gravity;
   WallNeighbour<Dim, L> n;
   for (int k = 0; k < Dim; ++k) {
     n.normal[k] = L(static_cast<Real>(patch.normal[k]));
-    n.centroid[k] = L(static_cast<Real>(patch.centroid[k]));
-    n.there[k] = L(static_cast<Real>(patch.centroid[k] - patch.hidden / patch.weight * patch.normal[k]));
+    n.pull[k] = L(static_cast<Real>(pull[k]));
+    for (int m = k; m < Dim; ++m) n.moment(k, m) = L(static_cast<Real>((patch.moment(k, m) + patch.moment(m, k)) / 2));
   }
   n.reach = L(static_cast<Real>(aside * aside / std::max(patch.distance, 0.1 * aside)));
   n.weight = L(static_cast<Real>(patch.weight));
@@ -72,7 +74,9 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
  public:
   WithWalls(const WallSupport<Dim>& walls, const Parameters<Dim>& parameters, const Particles<Dim, Real>& particles,
             const Finish& finish, const Terms&... terms)
-      : walls_(walls), parameters_(parameters), particles_(particles), finish_(finish), terms_(terms...) {}
+      : walls_(walls), parameters_(parameters), particles_(particles), finish_(finish), terms_(terms...) {
+    for (int d = 0; d < Dim; ++d) gravity_[d] = parameters.gravity[d];
+  }
 
   auto for_chunk(std::size_t number) const {
     return [this, inner = finish_.for_chunk(number)](std::size_t slot, const auto& sums) mutable {
@@ -109,7 +113,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     const auto x = particles_[position];
     Point<Dim> normal = Point<Dim>::Zero();
     std::int32_t wall = 0;
-    L to_there(Real(0));
+    L pull(Real(0)), centre(Real(0));  // along the normal
     n.weight = n.hidden = L(Real(0));
     n.reach = L(Real(1));
     for (int k = 0; k < I; ++k) {
@@ -121,13 +125,14 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
       set_lane(n.weight, k, static_cast<Real>(hit.weight));
       set_lane(n.hidden, k, static_cast<Real>(hit.hidden));
       set_lane(n.reach, k, static_cast<Real>(hit.distance));
-      set_lane(to_there, k, static_cast<Real>(hit.distance + hit.hidden / hit.weight));
+      set_lane(pull, k, static_cast<Real>(-(hit.distance * hit.weight + hit.hidden) * gravity_.dot(normal)));
+      set_lane(centre, k, static_cast<Real>(-hit.distance * hit.weight / 2));
     }
     for (int d = 0; d < Dim; ++d) {
       n.normal[d] = L(static_cast<Real>(normal[d]));
-      n.centroid[d] = -(n.reach * n.normal[d]);
-      n.there[d] = -(to_there * n.normal[d]);
+      n.pull[d] = pull * n.normal[d];
     }
+    n.moment = twice_symmetric(centre * n.normal, n.normal);
     return wall;
   }
 
@@ -159,9 +164,9 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     Point<Dim> x;
     for (int d = 0; d < Dim; ++d) x[d] = particles_[position][d][slot];
     walls_.visit(slot, x, [&](const WallPatch<Dim>& patch) {
-      add_neighbour(wall_terms_detail::neighbour_of<Dim, Real>(patch), walls_.wall(patch.wall), own, walls);
+      add_neighbour(wall_terms_detail::neighbour_of<Dim, Real>(patch, gravity_), walls_.wall(patch.wall), own, walls);
       hidden += patch.hidden;
-      along += patch.hidden * (Matrix::Identity() - patch.normal * patch.normal.transpose());
+      along += patch.hidden * Matrix::Identity() - patch.across;
     });
     const double limited = std::min(hidden, wall_terms_detail::most_hidden);
     if (hidden > limited) along *= limited / hidden;
@@ -199,6 +204,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     };
     std::apply([&](const Terms&... term) { (add(term), ...); }, terms_);
     out.add_radial(Radial{}, ij.x);
+    if constexpr (contains<PressureTerm, Reads>) sums[acceleration] += n.pull;
   }
 
   // ---- the fields of the fluid at a wall, from those of the particle
@@ -222,12 +228,6 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     own = own - dot(own, n.normal) * n.normal;  // the wall itself stays where it is
     const Vec<Dim, L> beyond = i[velocity] - own;
     return own + L(static_cast<Real>(wall.response.slip)) * (beyond - dot(beyond, n.normal) * n.normal);
-  }
-  template <class L, class Own> L at_wall(PressureTerm, const Neighbour<L>& n, const Wall<Dim>&, const Own& i) const {
-    Vec<Dim, L> gravity;
-    for (int d = 0; d < Dim; ++d) gravity[d] = L(static_cast<Real>(parameters_.gravity[d]));
-    const L density = L(static_cast<Real>(parameters_.eos.rest_density)) * (L(Real(1)) + i[compression]);
-    return i[pressure_term] + dot(gravity, n.there) / density;
   }
   template <class L, class Own>
   L at_wall(LocalTemperature, const Neighbour<L>& n, const Wall<Dim>& wall, const Own& i) const {
@@ -272,6 +272,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   const Particles<Dim, Real>& particles_;
   const Finish& finish_;
   std::tuple<const Terms&...> terms_;
+  Point<Dim> gravity_;
 };
 
 }  // namespace molten

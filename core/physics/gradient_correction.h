@@ -26,10 +26,10 @@ struct GradientMoment {
     out.gradW(moment, twice_symmetric(L(0.5) * ij.x, ij.x));
   }
 
-  /// Over the solid behind a piece s of a wall, ∫ ∇W ⊗ (x' − x) dV = h_s 1 − n ⊗ ∫_s W (x' − x) dS by Gauss's theorem;
+  /// Over the solid behind a piece s of a wall, ∫ ∇W ⊗ (x' − x) dV = h_s 1 − ∫_s n ⊗ W (x' − x) dS by Gauss's theorem;
   /// over all pieces the sum is symmetric.
   template <class Piece, class L, class Out> void behind_wall(const Piece& s, const L& density, Out& out) const {
-    auto sum = twice_symmetric((L(0.5) * density * s.weight) * s.normal, s.centroid);
+    auto sum = density * s.moment;
     for (int d = 0; d < static_cast<int>(s.normal.c.size()); ++d) sum(d, d) -= density * s.hidden;
     out.plain(moment, sum);
   }
