@@ -70,6 +70,22 @@ void Bodies<Dim>::begin_step(Contact<Dim>& contact, double time, double dt, cons
   way_ += fastest() * dt;
 }
 
+template <int Dim> void Bodies<Dim>::receive(std::span<const Kick<Dim>> sets) {
+  given_.assign(count(), Kick<Dim>{});
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    given_[k % count()].linear += sets[k].linear;
+    given_[k % count()].angular += sets[k].angular;
+  }
+}
+
+template <int Dim> void Bodies<Dim>::answer(double time, double particle_mass) {
+  for (std::size_t k = 0; k < given_.size(); ++k) {
+    if (!bodies_[k].inertia) continue;
+    motion_[k].velocity -= time * particle_mass / bodies_[k].inertia->mass * given_[k].linear;
+    angular_momentum_[k] -= time * particle_mass * given_[k].angular;
+  }
+}
+
 template <int Dim> void Bodies<Dim>::end_step(std::span<const Kick<Dim>> kicks, double particle_mass) {
   for (std::size_t k = 0; k < count(); ++k) {
     RigidMotion<Dim>& m = motion_[k];

@@ -1,6 +1,7 @@
 // Walls that move: bodies on a prescribed way, and free rigid bodies that gravity and the particles drive. The
-// particles feel a body through contact (core/boundary/contact.h); a free body receives the opposite of each impulse at
-// the place of the contact, so linear and angular momentum stay to round-off.
+// particles feel a body through contact (core/boundary/contact.h) and, with support, through its integrals
+// (core/boundary/wall_terms.h); a free body receives the opposite of each impulse at the place of the contact, or of
+// the particle, so linear and angular momentum stay to round-off.
 #pragma once
 
 #include <optional>
@@ -53,6 +54,11 @@ template <int Dim> class Bodies {
   void place(Contact<Dim>& contact);
   /// Sets the motions of the step to come: gravity (m/s²) drives free bodies, time (s) and dt (s) the others.
   void begin_step(Contact<Dim>& contact, double time, double dt, const std::array<double, Dim>& gravity);
+  /// What the particles receive from the bodies while these rates last, a unit of particle mass and time: one for each
+  /// body, one set after the other.
+  void receive(std::span<const Kick<Dim>> sets);
+  /// Gives free bodies the opposite of that for `time` (s), from particles of this mass (kg).
+  void answer(double time, double particle_mass);
   /// Moves the bodies to the end of the step and gives free ones the opposite of what particles of this mass (kg) got.
   void end_step(std::span<const Kick<Dim>> kicks, double particle_mass);
 
@@ -70,6 +76,7 @@ template <int Dim> class Bodies {
   std::vector<RigidBody<Dim>> bodies_;
   std::vector<RigidMotion<Dim>> motion_;  // at the present time; during a step, of the step
   std::vector<Spin<Dim>> angular_momentum_;
+  std::vector<Kick<Dim>> given_;        // a second, about the centre
   double time_ = 0, dt_ = 0, way_ = 0;  // s, s, m
 };
 

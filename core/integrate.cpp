@@ -21,6 +21,12 @@ namespace molten {
 
 namespace {
 
+/// For how long (s) the accelerations act on the velocities.
+template <int Dim, class Real> double kick_time(const State<Dim, Real>& s) {
+  const double dt = s.clock.dt;
+  return s.features.integrator == IntegratorKind::leap_frog ? (s.clock.previous_dt + dt) / 2 : dt;
+}
+
 /// By leap-frog or symplectic Euler. Four particles at once: the pass is bound by memory, and one by one by
 /// instructions. What is padding has no rates, so it stays at zero.
 template <bool leap_frog, int Dim, class Real> class Integrator {
@@ -31,7 +37,7 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
       : s_(s),
         p_(s.particles),
         dt_(s.clock.dt),
-        kick_(leap_frog ? (previous_dt + dt_) / 2 : dt_),
+        kick_(kick_time(s)),
         stretch_(previous_dt > 0 ? dt_ / previous_dt : 0),
         drift_(s),
         mover_(s) {}
@@ -216,7 +222,10 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   const IntegratorKind kind = s.features.integrator;
   if (kind == IntegratorKind::energy_bounded_euler) return integrate_energy_bounded(s);
   if (kind != IntegratorKind::leap_frog && kind != IntegratorKind::symplectic_euler) return finish_stages(s);
-  if (s.features.bodies) s.bodies.begin_step(s.contact, s.clock.time, s.clock.dt, s.parameters.gravity);
+  if (s.features.bodies) {
+    s.bodies.answer(kick_time(s), s.parameters.particle_mass);
+    s.bodies.begin_step(s.contact, s.clock.time, s.clock.dt, s.parameters.gravity);
+  }
   const Moved<Dim> moved = kind == IntegratorKind::leap_frog ? move_all<true>(s) : move_all<false>(s);
   s.neighbours.moved(std::sqrt(moved.way2));
   s.sleep.warm_time += s.clock.dt;

@@ -126,10 +126,13 @@ template <int Dim, class Real, class... Terms> void run_rates_pass(State<Dim, Re
 /// The same with what walls add.
 template <int Dim, class Real, class... Terms>
 void run_rates_pass_at_walls(State<Dim, Real>& s, const Terms&... terms) {
+  const bool moving = s.features.wall_support && s.features.bodies;
+  std::vector<Kick<Dim>> given(moving ? s.neighbours.chunks().size() * s.bodies.count() : 0);
   const auto walls = [&](const auto& finish) {
-    return WithWalls(s.wall_support, s.parameters, s.particles, finish, terms...);
+    return WithWalls(s.wall_support, s.parameters, s.particles, finish, terms...).giving(given);
   };
   run_rates_pass_with(s, walls, terms...);
+  if (moving) s.bodies.receive(given);
 }
 
 /// The artificial viscosity of the run.

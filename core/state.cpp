@@ -66,7 +66,7 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
       {},
       {},
       {}};
-  if (features.wall_support) s.wall_support = {s.contact, parameters};
+  if (features.wall_support) s.wall_support = {s.contact, s.bodies, parameters};
   Particles<Dim, Real>& p = s.particles;
   const std::size_t count = start.position.size();
   p.resize((count + cluster_size - 1) / cluster_size * cluster_size, count);

@@ -69,11 +69,13 @@ template <int Dim, class Real> void step(State<Dim, Real>& s) {
 }
 
 template <int Dim, class Real> void list_if_due(State<Dim, Real>& s) {
-  if (s.neighbours.is_due() || s.parameters.sort_each_step) sort_and_list(s);
+  const bool bodies_came = s.features.wall_support && s.bodies.way() > s.parameters.skin / 2;
+  if (s.neighbours.is_due() || bodies_came || s.parameters.sort_each_step) sort_and_list(s);
 }
 
 template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s) {
   list_if_due(s);
+  if (s.features.wall_support) s.wall_support.place(s.bodies);
   if (s.features.density_sum) sum_density(s);
   if (s.features.gradient_correction) find_corrections(s);
   const bool twice_at_walls = s.features.stress && s.features.wall_support;
@@ -108,7 +110,7 @@ template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s) {
       if (s.contact.may_touch(point, s.parameters.spacing)) s.near_wall[c] = 1;
     }
   });
-  if (s.features.wall_support) s.wall_support.mark(s.particles, s.neighbours.first_slot(Block::warm));
+  if (s.features.wall_support) s.wall_support.mark(s.particles, s.neighbours.first_slot(Block::warm), s.bodies);
 }
 
 template <int Dim, class Real> void require_sane(const State<Dim, Real>& s) {

@@ -150,7 +150,7 @@ TEST(WallIntegrals, ManySmallFacetsCountAsTheWallThatTheyMake) {
       const Point<3> x = (20 - depth) * way;
       const auto as_sphere = [](Point<3> y) { return y.norm() > 20; };
       const auto ours = sum(fine, x), theirs = sum(coarse, x), twin = brute<3>(x, as_sphere, 130);
-      EXPECT_NEAR(ours.hidden, theirs.hidden, 0.005) << depth;
+      EXPECT_NEAR(ours.hidden, theirs.hidden, 0.008) << depth << ", the coarse mesh is up to 0.014 inside the sphere";
       EXPECT_NEAR(ours.hidden, twin.hidden, 0.003) << depth;
       EXPECT_LT((ours.gradient - twin.gradient).norm(), 0.003) << depth;
       fine.visit(x, [&](const WallPatch<3>& patch) {

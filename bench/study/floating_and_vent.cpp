@@ -31,7 +31,7 @@ void run_floating_box(const Request& r, Report& report) {
       fmt::format("[[boundary]]\nbox = {}\ninside = true\nslip = 1\n", box_text(2, {}, {tank_width, 3 * depth, 0})) +
       fmt::format("[[boundary]]\nbox = {}\nslip = 1\nbody = {{ density = {:.17g} }}\n", box_text(2, lower, upper),
                   r["density"] * density) +
-      sound_speed_text(10 * std::sqrt(2 * gravity * depth));
+      sound_speed_text(10 * std::sqrt(2 * gravity * depth)) + wall_support_text();
   s.start = lattice(2, {}, {tank_width, depth, 0}, spacing);
   std::erase_if(s.start.position, [&](const Triple& x) {
     return x[0] > lower[0] - spacing / 4 && x[0] < upper[0] + spacing / 4 && x[1] > bottom;
@@ -45,7 +45,9 @@ void run_floating_box(const Request& r, Report& report) {
   simulation->run_until(end, 0.01, [&](const Cloud& c) {
     if (c.time < 0.75 * end) return;
     const double base = c.bodies.at(0).centre[1] - box_height / 2;
-    sum += (s.start.measure - base * tank_width) / (tank_width - box_width), ++samples;
+    double water = 0;  // m², squeezed by its weight
+    for (const double rho : c.density) water += c.mass / rho;
+    sum += (water - base * tank_width) / (tank_width - box_width), ++samples;
   });
   const std::array<double, 9> turn = simulation->cloud().bodies.at(0).turn;
   report.judge("draught", std::abs(sum / samples / draught - 1));

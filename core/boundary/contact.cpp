@@ -62,6 +62,7 @@ template <int Dim> struct Contact<Dim>::Impl {
     Point<Dim> path = Point<Dim>::Zero(), start = Point<Dim>::Zero();  // m; in the group's frame
   };
   Impl(std::vector<Wall<Dim>> walls, double r, double cell, SearchMethod method);
+  const Group& group(std::int32_t body) const { return body < 0 ? fixed : bodies[static_cast<std::size_t>(body)]; }
   bool near_body(const Group& group, const Point<Dim>& x, double reach, double dt) const;
   bool near_wall(const Point<Dim>& x, double reach, double dt) const;
   int move(Motion<Dim>& motion, double dt, std::span<Kick<Dim>> kicks) const;
@@ -241,9 +242,11 @@ template <int Dim> Contact<Dim>& Contact<Dim>::operator=(Contact&&) noexcept = d
 template <int Dim> bool Contact<Dim>::empty() const { return impl_->bodies.empty() && impl_->fixed.search->empty(); }
 template <int Dim> std::size_t Contact<Dim>::bodies() const { return impl_->bodies.size(); }
 
-template <int Dim> const std::vector<Wall<Dim>>& Contact<Dim>::fixed_walls() const { return impl_->fixed.walls; }
-template <int Dim> const WallSurface<Dim>& Contact<Dim>::fixed_surface() const {
-  return impl_->fixed.search->surface();
+template <int Dim> const std::vector<Wall<Dim>>& Contact<Dim>::walls_of(std::int32_t body) const {
+  return impl_->group(body).walls;
+}
+template <int Dim> const WallSurface<Dim>& Contact<Dim>::surface_of(std::int32_t body) const {
+  return impl_->group(body).search->surface();
 }
 
 template <int Dim> void Contact<Dim>::set_motion(std::size_t body, const RigidMotion<Dim>& motion) {

@@ -99,9 +99,9 @@ template <int Dim> class Contact {
   /// How a body moves during the step to come.
   void set_motion(std::size_t body, const RigidMotion<Dim>& motion);
 
-  /// The walls that stay in place, less their vertices and facets, which are in the surface.
-  const std::vector<Wall<Dim>>& fixed_walls() const;
-  const WallSurface<Dim>& fixed_surface() const;
+  /// The walls that stay in place (−1) or those of a body, less their vertices and facets, which are in the surface.
+  const std::vector<Wall<Dim>>& walls_of(std::int32_t body) const;
+  const WallSurface<Dim>& surface_of(std::int32_t body) const;
 
   /// Moves a particle by dt (s) along its rate, bouncing; a particle that overlaps a wall at the start is pushed out
   /// along the wall's normal. Returns how many bounces there were. A rate that is not finite moves it all the same.

@@ -11,7 +11,8 @@ namespace molten {
 namespace {
 
 constexpr double same_direction = 1e-9;  // sine of the angle up to which facets that share an edge lie in one plane
-constexpr double clump_radius = 0.2;   // support radii; facets larger than this are alone
+constexpr double clump_radius = 0.2;     // support radii; facets larger than this are alone
+constexpr double same_side = 0.99;       // cosine of the angle up to which facets may share a clump
 constexpr double small_part = 0.4;       // radius over distance, up to which moments do
 constexpr double least_scale = 0.124;    // of the parts that a facet is cut in; nearer, it is integrated
 constexpr double plane_size = 1e6;       // half of it, in support radii: what stands for infinite
@@ -145,7 +146,7 @@ template <int Dim> class WallIntegrals<Dim>::Builder {
       for (int k = 0; k < 3; ++k) {
         const std::int32_t g = neighbour(members[m], k);
         if (g < 0 || clump_[g] >= 0 || !has_area(g) || surface_.wall(g) != surface_.wall(seed)) continue;
-        if (facets_[g].normal.dot(facets_[seed].normal) < 0.95 || furthest(g, middle) > most_) continue;
+        if (facets_[g].normal.dot(facets_[seed].normal) < same_side || furthest(g, middle) > most_) continue;
         clump_[g] = number;
         members.push_back(g);
       }

@@ -21,6 +21,14 @@ template <int Dim> struct WallPatch : WallPiece<Dim> {
   Point<Dim> centroid;  // of W over the piece, from the particle, m
   Turn<Dim> moment;     // ∫ n ⊗ W y dS, y from the particle
   Turn<Dim> across;     // Σ h n ⊗ n over the facets, h: hidden behind one
+
+  /// From a body's frame to one that is turned.
+  void turn(const Turn<Dim>& by) {
+    this->normal = by * this->normal;
+    centroid = by * centroid;
+    moment = by * moment * by.transpose();
+    across = by * across * by.transpose();
+  }
 };
 
 /// A patch while its facets are added: those of one wall that a particle sees from the same side and that lie within

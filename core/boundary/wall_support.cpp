@@ -17,17 +17,40 @@ double stiffness_beside_plane(const RadialIntegrals& radial, double d, double h)
 }  // namespace
 
 template <int Dim>
-WallSupport<Dim>::WallSupport(const Contact<Dim>& contact, const Parameters<Dim>& p)
-    : integrals_(std::make_shared<WallIntegrals<Dim>>(contact.fixed_walls(), contact.fixed_surface(), p.kernel,
-                                                      p.smoothing_length)),
-      walls_(contact.fixed_walls()),
-      reach_(integrals_->reach() + p.skin),
+WallSupport<Dim>::WallSupport(const Contact<Dim>& contact, const Bodies<Dim>& bodies, const Parameters<Dim>& p)
+    : reach_(p.support_radius + p.skin),
       viscous_stiffness_(stiffness_beside_plane(RadialIntegrals(p.kernel, Dim, p.smoothing_length), p.spacing / 2,
-                                                p.smoothing_length)) {}
+                                                p.smoothing_length)) {
+  const auto integrals_of = [&](std::int32_t body) {
+    return std::make_shared<const WallIntegrals<Dim>>(contact.walls_of(body), contact.surface_of(body), p.kernel,
+                                                      p.smoothing_length);
+  };
+  integrals_ = integrals_of(-1);
+  walls_ = contact.walls_of(-1);
+  for (std::size_t k = 0; k < bodies.count(); ++k) {
+    const auto body = static_cast<std::int32_t>(k);
+    const auto first = static_cast<std::int32_t>(walls_.size());
+    bodies_.push_back({integrals_of(body), bodies.body(k).extent, first, bodies.motion(k)});
+    const auto& walls = contact.walls_of(body);
+    walls_.insert(walls_.end(), walls.begin(), walls.end());
+  }
+}
+
+template <int Dim> void WallSupport<Dim>::place(const Bodies<Dim>& bodies) {
+  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].motion = bodies.motion(k);
+}
+
+template <int Dim> std::int32_t WallSupport<Dim>::plane_near(const Point<Dim>& x) const {
+  for (const Moving& body : bodies_)
+    if (body.is_near(x, reach_) && body.integrals->plane_near(body.motion.start.to_body(x), reach_) != no_plane)
+      return many_planes;
+  return integrals_->plane_near(x, reach_);
+}
 
 template <int Dim>
 template <class Real>
-void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t first_slot) {
+void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t first_slot, const Bodies<Dim>& bodies) {
+  place(bodies);
   const std::size_t clusters = particles.slots() / cluster_size;
   plane_.assign(clusters, no_plane);
   const auto x = particles[position];
@@ -38,7 +61,7 @@ void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t f
       if (particles.is_padding(slot)) continue;
       Point<Dim> point;
       for (int k = 0; k < Dim; ++k) point[k] = x[k][slot];
-      const std::int32_t plane = integrals_->plane_near(point, reach_);
+      const std::int32_t plane = plane_near(point);
       if (plane == no_plane) continue;
       plane_[c] = plane_[c] == no_plane || plane_[c] == plane ? plane : many_planes;
     }
@@ -62,7 +85,7 @@ void WallSupport<Dim>::find_patches(const Particles<Dim, Real>& particles, std::
       Point<Dim> point;
       for (int d = 0; d < Dim; ++d) point[d] = x[d][slot];
       if (!particles.is_padding(slot))
-        integrals_->visit(point, [&](const WallPatch<Dim>& patch) { patches.all.push_back(patch); });
+        visit_all(point, [&](const WallPatch<Dim>& patch) { patches.all.push_back(patch); });
       patches.begin[k + 1] = static_cast<std::uint32_t>(patches.all.size());
     }
   });
@@ -71,14 +94,15 @@ void WallSupport<Dim>::find_patches(const Particles<Dim, Real>& particles, std::
 
 template <int Dim> std::size_t WallSupport<Dim>::bytes() const {
   std::size_t bytes = (integrals_ ? integrals_->bytes() : 0) + plane_.capacity() * sizeof(plane_[0]);
+  for (const Moving& body : bodies_) bytes += body.integrals->bytes();
   for (const Patches& p : patches_) bytes += sizeof p + p.all.capacity() * sizeof p.all[0];
   return bytes;
 }
 
 template class WallSupport<2>;
 template class WallSupport<3>;
-#define MOLTEN_INSTANTIATE(Dim, Real)                                             \
-  template void WallSupport<Dim>::mark(const Particles<Dim, Real>&, std::size_t); \
+#define MOLTEN_INSTANTIATE(Dim, Real)                                                                 \
+  template void WallSupport<Dim>::mark(const Particles<Dim, Real>&, std::size_t, const Bodies<Dim>&); \
   template void WallSupport<Dim>::find_patches(const Particles<Dim, Real>&, std::size_t);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)

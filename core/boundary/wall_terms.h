@@ -9,10 +9,14 @@
 // - Along the wall a particle misses the part h of its support: its acceleration is multiplied by
 //   (1 − Σ h (1 − n n))^−1. Sums for temperature and strain rate are divided by 1 − Σ h (Ferrand et al. 2013),
 //   which makes them exact for linear fields, and the viscous and heat fluxes for quadratic ones, at a plane.
+// - Bodies: their pieces move with them. What a particle gets beside the pair forces, which are each other's opposite,
+//   comes from the walls, so a body gets the opposite of its share, at the particle: linear and angular momentum stay.
 #pragma once
 
 #include <Eigen/LU>
+#include <span>
 #include <tuple>
+#include <vector>
 
 #include "core/boundary/wall_integrals.h"
 #include "core/boundary/wall_support.h"
@@ -25,10 +29,10 @@ constexpr double most_hidden = 0.9;  // in a cleft that hardly leaves room to th
 
 /// A piece of a wall as the neighbour of the particles in the lanes of L.
 template <int Dim, class L> struct WallNeighbour {
-  Vec<Dim, L> normal;
-  Vec<Dim, L> pull;          // by the hydrostatic part of p_s, m/s²
-  SymTensor<Dim, L> moment;  // of ∫_s n ⊗ W y dS, the symmetric part
-  L reach, weight, hidden;   // m, 1/m, 1; reach: of the neighbour, straight along the normal
+  Vec<Dim, L> normal, velocity;  // velocity: of the wall, m/s
+  Vec<Dim, L> pull;              // by the hydrostatic part of p_s, m/s²
+  SymTensor<Dim, L> moment;      // of ∫_s n ⊗ W y dS, the symmetric part
+  L reach, weight, hidden;       // m, 1/m, 1; reach: of the neighbour, straight along the normal
 };
 
 template <int Dim, class Real>
@@ -78,12 +82,20 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     for (int d = 0; d < Dim; ++d) gravity_[d] = parameters.gravity[d];
   }
 
+  /// What the particles of each chunk receive from bodies is added to `given`, one set for each chunk.
+  WithWalls giving(std::span<Kick<Dim>> given) const {
+    WithWalls other(*this);
+    other.given_ = given;
+    return other;
+  }
+
   auto for_chunk(std::size_t number) const {
-    return [this, inner = finish_.for_chunk(number)](std::size_t slot, const auto& sums) mutable {
+    const std::span<Kick<Dim>> given = given_.subspan(number * walls_.bodies(), given_.empty() ? 0 : walls_.bodies());
+    return [this, given, inner = finish_.for_chunk(number)](std::size_t slot, const auto& sums) mutable {
       const std::int32_t plane = walls_.plane(slot / cluster_size);
       if (plane == WallSupport<Dim>::no_plane) return inner(slot, sums);
       auto whole = sums;
-      plane == WallSupport<Dim>::many_planes ? add_many(slot, whole) : add_plane(slot, plane, whole);
+      plane == WallSupport<Dim>::many_planes ? add_many(slot, whole, given) : add_plane(slot, plane, whole);
       inner(slot, whole);
     };
   }
@@ -132,30 +144,41 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
       n.normal[d] = L(static_cast<Real>(normal[d]));
       n.pull[d] = pull * n.normal[d];
     }
+    n.velocity = lanes_of<L>(walls_.wall(wall).skin.velocity_along(normal));
     n.moment = twice_symmetric(centre * n.normal, n.normal);
     return wall;
   }
 
   /// Corners, edges, curved walls: particle by particle.
   template <class... F, int I>
-  [[gnu::noinline]] void add_many(std::size_t slot, Values<FieldList<F...>, Dim, Lanes<Real, I>>& sums) const {
+  [[gnu::noinline]] void add_many(std::size_t slot, Values<FieldList<F...>, Dim, Lanes<Real, I>>& sums,
+                                  std::span<Kick<Dim>> given) const {
     for (int k = 0; k < I; ++k) {
       if (particles_.is_padding(slot + k)) continue;
       Values<FieldList<F...>, Dim, Lanes<Real, 1>> own;
       (unrolled<components<F, Dim>>(
            [&](auto c) { component(own[F{}], c) = Lanes<Real, 1>(lane(component(sums[F{}], c), k)); }),
        ...);
-      add_many_to_one(slot + k, own);
+      add_many_to_one(slot + k, own, given);
       (unrolled<components<F, Dim>>(
            [&](auto c) { set_lane(component(sums[F{}], c), k, lane(component(own[F{}], c), 0)); }),
        ...);
     }
   }
 
+  using Matrix = Eigen::Matrix<double, Dim, Dim>;
+
+  /// What a particle receives from a body: at once, and of what it gets in the end.
+  struct Share {
+    std::int32_t body;
+    Point<Dim> acceleration = Point<Dim>::Zero();
+    Matrix along = Matrix::Zero();
+  };
+
   template <class... F>
-  void add_many_to_one(std::size_t slot, Values<FieldList<F...>, Dim, Lanes<Real, 1>>& sums) const {
+  void add_many_to_one(std::size_t slot, Values<FieldList<F...>, Dim, Lanes<Real, 1>>& sums,
+                       std::span<Kick<Dim>> given) const {
     using L = Lanes<Real, 1>;
-    using Matrix = Eigen::Matrix<double, Dim, Dim>;
     const auto own = wall_terms_detail::load_own<1>(particles_, slot, Reads{});
     Values<FieldList<F...>, Dim, L> walls;
     pair_pass_detail::clear(walls);
@@ -163,23 +186,54 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     Matrix along = Matrix::Zero();  // Σ h (1 − n n)
     Point<Dim> x;
     for (int d = 0; d < Dim; ++d) x[d] = particles_[position][d][slot];
+    std::vector<Share> shares;
     walls_.visit(slot, x, [&](const WallPatch<Dim>& patch) {
-      add_neighbour(wall_terms_detail::neighbour_of<Dim, Real>(patch, gravity_), walls_.wall(patch.wall), own, walls);
+      const Wall<Dim>& wall = walls_.wall(patch.wall);
+      auto n = wall_terms_detail::neighbour_of<Dim, Real>(patch, gravity_);
+      n.velocity = lanes_of<L>(velocity_of(wall, patch, x, walls_));
+      const auto before = walls;
+      add_neighbour(n, wall, own, walls);
+      const Matrix part = patch.hidden * Matrix::Identity() - patch.across;
       hidden += patch.hidden;
-      along += patch.hidden * Matrix::Identity() - patch.across;
+      along += part;
+      if constexpr (contains<Acceleration, FieldList<F...>>) {
+        if (given.empty() || wall.body < 0) return;
+        if (shares.empty() || shares.back().body != wall.body) shares.push_back({wall.body});
+        shares.back().acceleration += point_of(walls[acceleration]) - point_of(before[acceleration]);
+        shares.back().along += part;
+      }
     });
     const double limited = std::min(hidden, wall_terms_detail::most_hidden);
-    if (hidden > limited) along *= limited / hidden;
+    const double kept = hidden > limited ? limited / hidden : 1;
+    along *= kept;
     (join(F{}, sums[F{}], walls[F{}], L(static_cast<Real>(1 / (1 - limited))),
-          [&](const Vec<Dim, L>& a) {
-            Point<Dim> b;
-            for (int d = 0; d < Dim; ++d) b[d] = lane(a[d], 0);
-            b = (Matrix::Identity() - along).inverse() * b;
-            Vec<Dim, L> c;
-            for (int d = 0; d < Dim; ++d) c[d] = L(static_cast<Real>(b[d]));
-            return c;
-          }),
+          [&](const Vec<Dim, L>& a) { return lanes_of<L>((Matrix::Identity() - along).inverse() * point_of(a)); }),
      ...);
+    if constexpr (contains<Acceleration, FieldList<F...>>)
+      for (const Share& share : shares) {
+        // What multiplies the acceleration, (1 − A)^−1, adds A times what comes out.
+        const Point<Dim> gain = share.acceleration + kept * share.along * point_of(sums[acceleration]);
+        Kick<Dim>& kick = given[static_cast<std::size_t>(share.body)];
+        kick.linear += gain;
+        kick.angular += moment_of(Point<Dim>(x - walls_.motion(share.body).start.centre), gain);
+      }
+  }
+
+  static Point<Dim> velocity_of(const Wall<Dim>& wall, const WallPatch<Dim>& patch, const Point<Dim>& x,
+                                const WallSupport<Dim>& walls) {
+    if (wall.body < 0) return wall.skin.velocity_along(patch.normal);
+    const RigidMotion<Dim>& motion = walls.motion(wall.body);
+    return motion.velocity_at(x + patch.centroid, motion.start.centre);
+  }
+  template <class L> static Point<Dim> point_of(const Vec<Dim, L>& v) {
+    Point<Dim> p;
+    for (int d = 0; d < Dim; ++d) p[d] = lane(v[d], 0);
+    return p;
+  }
+  template <class L> static Vec<Dim, L> lanes_of(const Point<Dim>& p) {
+    Vec<Dim, L> v;
+    for (int d = 0; d < Dim; ++d) v[d] = L(static_cast<Real>(p[d]));
+    return v;
   }
 
   /// What the terms make of one neighbour.
@@ -223,11 +277,8 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   }
   template <class L, class Own>
   Vec<Dim, L> at_wall(Velocity, const Neighbour<L>& n, const Wall<Dim>& wall, const Own& i) const {
-    Vec<Dim, L> own;
-    for (int d = 0; d < Dim; ++d) own[d] = L(static_cast<Real>(wall.skin.velocity[d]));
-    own = own - dot(own, n.normal) * n.normal;  // the wall itself stays where it is
-    const Vec<Dim, L> beyond = i[velocity] - own;
-    return own + L(static_cast<Real>(wall.response.slip)) * (beyond - dot(beyond, n.normal) * n.normal);
+    const Vec<Dim, L> beyond = i[velocity] - n.velocity;
+    return n.velocity + L(static_cast<Real>(wall.response.slip)) * (beyond - dot(beyond, n.normal) * n.normal);
   }
   template <class L, class Own>
   L at_wall(LocalTemperature, const Neighbour<L>& n, const Wall<Dim>& wall, const Own& i) const {
@@ -273,6 +324,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   const Finish& finish_;
   std::tuple<const Terms&...> terms_;
   Point<Dim> gravity_;
+  std::span<Kick<Dim>> given_;  // by chunk and body
 };
 
 }  // namespace molten

@@ -83,9 +83,6 @@ void check_support(const TomlReader& keys, const Boundary& boundary, const Scene
   if (boundary.temperature && !scene.numerics.wall_support)
     keys.fail("temperature", "has no effect without wall support; add numerics.wall_support = true");
   if (boundary.temperature && !scene.fluid.heat) keys.fail("temperature", "needs heat; add [fluid.heat]");
-  for (const std::string_view key : {"motion", "body"})
-    if (keys.has(key) && scene.numerics.wall_support)
-      keys.fail(key, "is for walls without support; leave it or numerics.wall_support out");
 }
 
 TomlReader::Keys boundary_keys() {
