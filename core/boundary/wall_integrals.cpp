@@ -20,6 +20,9 @@ constexpr double plane_size = 1e6;       // half of it, in support radii: what s
 const Gauss<6> coarse;
 const Gauss<16> fine;
 
+/// std::hypot takes care of overflow, which costs a sixth of the wall's share in a step.
+double length_of(double a, double b) { return std::sqrt(a * a + b * b); }
+
 /// The angle (rad) under which a line's part t0..t1 is seen from a point at the distance p.
 double angle_of(double p, double t0, double t1) { return std::atan2(p * (t1 - t0), p * p + t0 * t1); }
 
@@ -32,7 +35,7 @@ bool clip(double half2, double t0, double t1, double& from, double& to) {
   return from < to;
 }
 
-double distance_to_segment(double p, double t0, double t1) { return std::hypot(p, t0 > 0 ? t0 : t1 < 0 ? t1 : 0); }
+double distance_to_segment(double p, double t0, double t1) { return length_of(p, t0 > 0 ? t0 : t1 < 0 ? t1 : 0); }
 
 template <int Dim> Turn<Dim> square(const Point<Dim>& v) { return v * v.transpose(); }
 
@@ -346,7 +349,7 @@ void WallIntegrals<Dim>::add_exact(Sum& sum, const Sheet& sheet, const Point<Dim
     double from, to;
     const double t0 = e.along.dot(e.start - foot);
     if (!clip(radius2, t0, t0 + e.length, from, to)) return;
-    const auto r = [&](double t) { return std::hypot(height, t); };
+    const auto r = [&](double t) { return length_of(height, t); };
     sum.weight += fine(from, to, [&](double t) { return radial_.kernel(r(t)); });
     sum.moment += (radial_.weight_beyond(r(from)) - radial_.weight_beyond(r(to))) * e.along;
     sum.hidden += std::copysign(1.0, height) * fine(std::atan(from / at_foot), std::atan(to / at_foot), [&](double a) {
@@ -379,7 +382,7 @@ void WallIntegrals<Dim>::add_exact(Sum& sum, const Sheet& sheet, const Point<Dim
           edge_weight += rule.weight[g] * half * beyond;
         }
       };
-      if (to - from < 1.5 * std::hypot(height, p))
+      if (to - from < 1.5 * length_of(height, p))
         integrate(coarse);
       else
         integrate(fine);
@@ -401,11 +404,11 @@ double WallIntegrals<Dim>::distance(const Sheet& sheet, const Point<Dim>& x, boo
     const double t0 = e.along.dot(a), t1 = t0 + e.length;
     if constexpr (Dim == 2) {
       inside = t0 <= 0 && t1 >= 0;
-      nearest = std::hypot(d, std::min(std::abs(t0), std::abs(t1)));
+      nearest = length_of(d, std::min(std::abs(t0), std::abs(t1)));
     } else {
       const double p = e.outward.dot(a);
       inside = inside && p >= 0;
-      if (!(outer_edges_alone && e.inner)) nearest = std::min(nearest, std::hypot(d, distance_to_segment(p, t0, t1)));
+      if (!(outer_edges_alone && e.inner)) nearest = std::min(nearest, length_of(d, distance_to_segment(p, t0, t1)));
     }
   }
   return inside && !outer_edges_alone ? std::abs(d) : nearest;
