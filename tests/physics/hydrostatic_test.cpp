@@ -128,8 +128,8 @@ TEST(Hydrostatic, TankOf8In3D) { expect_rest(settle<3, float>({.deep = 8, .wide 
 // the bottom than its pressure there wants. bench/study/hydrostatic.cpp does without either, and gets 0.28 %.
 TEST(SlowHydrostatic, TankOf40) { expect_rest(settle<2, float>({.deep = 40, .wide = 40}), 0.012, 1e-6); }
 
-// For the same reasons the errors do not fall in proportion to the spacing: the pressure's is 0.65 % at 40 and 0.87 % at 80,
-// where 1.01 % at the bottom and 3.8e-6 of kinetic energy miss the 1 % and 1e-6 aimed at.
+// For the same reasons the errors do not fall in proportion to the spacing: the pressure's is 0.65 % at 40 and 0.87 %
+// at 80, where 1.01 % at the bottom and 3.8e-6 of kinetic energy miss the 1 % and 1e-6 aimed at.
 TEST(SlowHydrostatic, TankOf80) {
   expect_rest(settle<2, float>({.deep = 40, .wide = 20}), 0.01, 1e-6);
   expect_rest(settle<2, float>({.deep = 80, .wide = 20}), 0.011, 5e-6);
