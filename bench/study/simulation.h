@@ -15,7 +15,7 @@ namespace molten::study {
 
 using Triple = std::array<double, 3>;
 
-/// Every particle at one moment; z = 0 in 2-D.
+/// Every particle of the fluid at one moment; z = 0 in 2-D.
 struct Cloud {
   double time = 0, spacing = 0;            // s, m
   double sound_speed = 0;                  // m/s
