@@ -55,7 +55,11 @@ template <int Dim, class Real> class Engine : public Simulation {
     const auto v = state_.particles[velocity];
     const Real* held_by = state_.particles[held][0];  // null without boundary particles
     for (std::size_t slot = 0; slot < state_.particles.slots(); ++slot) {
-      if (state_.particles.is_padding(slot) || (held_by && held_by[slot] > 0)) continue;
+      if (state_.particles.is_padding(slot)) continue;
+      if (held_by && held_by[slot] > 0) {
+        c.wall_pressure.push_back(p.eos.pressure(double(state_.particles[compression][0][slot])));
+        continue;
+      }
       Triple place{}, speed{};
       for (int d = 0; d < Dim; ++d) place[d] = x[d][slot], speed[d] = v[d][slot];
       const double delta = state_.particles[compression][0][slot];

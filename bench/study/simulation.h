@@ -24,6 +24,7 @@ struct Cloud {
   std::vector<Triple> position, velocity;  // m, m/s
   std::vector<double> density, pressure;   // kg/m³, Pa
   std::vector<double> temperature;         // empty without heat
+  std::vector<double> wall_pressure;       // Pa, of boundary particles
   std::vector<SnapshotBody> bodies;
 
   std::size_t count() const { return id.size(); }
