@@ -74,6 +74,13 @@ TEST(BoundaryParticles, AreTwoStaggeredRowsAroundACorner) {
   EXPECT_EQ(points.size(), 4u + 2 * 2 + 5 + 4);
 }
 
+TEST(BoundaryParticles, OfWallsThatMeetKeepTheirDistance) {
+  Wall<2> step;
+  step.vertices = {{1, -2}, {1, 1.3}, {2, 1.3}, {2, -2}};
+  step.facets = {{0, 1}, {1, 2}, {2, 3}};
+  EXPECT_GE(least_distance(held_points<2>({open_tank(3, 2), step}, 1)), 0.45);
+}
+
 TEST(BoundaryParticles, StandBehindTheFacesOfACube) {
   constexpr int n = 5;
   const auto points = held_points<3>({cube_wall(n)}, 1);

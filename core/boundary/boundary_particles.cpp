@@ -21,10 +21,12 @@ template <int Dim> class Points {
  public:
   explicit Points(double distance) : distance_(distance) {}
 
-  void add(const Point<Dim>& x) {
-    if (has_near(x)) return;
+  /// False: it is too near to another.
+  bool add(const Point<Dim>& x) {
+    if (has_near(x)) return false;
     cells_[key(cell_of(x))].push_back(points_.size());
     points_.push_back(x);
+    return true;
   }
   const std::vector<Point<Dim>>& all() const { return points_; }
 
@@ -223,9 +225,12 @@ template <int Dim> double held_pitch(double spacing) { return std::pow(2.0, 1.0 
 
 template <int Dim> std::vector<HeldPoint<Dim>> held_points(const std::vector<Wall<Dim>>& walls, double pitch) {
   std::vector<HeldPoint<Dim>> held;
-  for (const Wall<Dim>& wall : walls)
-    if (!wall.is_plane)
-      for (const Point<Dim>& x : rows_on(wall, pitch)) held.push_back({x, wall.body});
+  Points<Dim> fixed(nearest * pitch);  // walls that stay may run into each other
+  for (const Wall<Dim>& wall : walls) {
+    if (wall.is_plane) continue;
+    for (const Point<Dim>& x : rows_on(wall, pitch))
+      if (wall.body >= 0 || fixed.add(x)) held.push_back({x, wall.body});
+  }
   return held;
 }
 
