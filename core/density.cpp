@@ -29,12 +29,18 @@ template <int Dim, class Real> void filter_density(State<Dim, Real>& s) {
   const bool mls = p.density_filter.kind == DensityFilter::Kind::mls;
   const auto delta = s.particles[compression][0], term = s.particles[pressure_term][0];
   const auto half = s.particles[half_compression][0], filtered = s.particles[filtered_compression][0];
+  const auto held_by = s.particles[held][0];  // null without boundary particles
   const PlainFinish finish{[&](std::size_t slot, const auto& sums) {
-    filtered[slot] = static_cast<Real>(
-        s.particles.is_padding(slot) ? 0 : filtered_compression_of<Dim>(sums, mls, p.smoothing_length));
+    if (s.particles.is_padding(slot) || (held_by && held_by[slot] > 0))
+      filtered[slot] = delta[slot];
+    else
+      filtered[slot] = static_cast<Real>(filtered_compression_of<Dim>(sums, mls, p.smoothing_length));
   }};
   with_run_kernel(s, [&](const auto& kernel) {
-    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, DensityFilterSums{mls});
+    const auto pass = [&](const auto& term) {
+      pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel, finish, term);
+    };
+    held_by ? pass(FluidFilterSums{mls}) : pass(DensityFilterSums{mls});
   });
   for_each_slot(s.particles.slots(), [&](std::size_t slot) {
     if (half) half[slot] += filtered[slot] - delta[slot];

@@ -33,6 +33,7 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
   const auto v = p[velocity];
   const double m = s.parameters.particle_mass;
   const Real* share = s.clock.step > 0 ? p[energy_share][0] : nullptr;  // of the last step
+  const Real* held_by = p[held][0];                                     // null without boundary particles
   Diagnostics zero;
   if (share) zero.mean_energy_share = zero.largest_energy_share = 0;
   zero.lower.fill(std::numeric_limits<double>::max());
@@ -40,7 +41,7 @@ template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s) {
   Diagnostics total = reduce_slots(
       p.slots(), zero,
       [&](std::size_t slot, Diagnostics& d) {
-        if (p.is_padding(slot)) return;
+        if (p.is_padding(slot) || (held_by && held_by[slot] > 0)) return;
         double v2 = 0;
         for (int k = 0; k < Dim; ++k) {
           v2 += double(v[k][slot]) * v[k][slot];
@@ -150,7 +151,9 @@ Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>
   shot.step = s.clock.step;
   shot.dimensions = Dim;
   shot.spacing = s.parameters.spacing;
-  const std::vector<std::uint32_t> slots = slots_by_id(s.particles);
+  std::vector<std::uint32_t> slots = slots_by_id(s.particles);
+  if (const Real* held_by = s.particles[held][0])
+    std::erase_if(slots, [held_by](std::uint32_t slot) { return held_by[slot] > 0; });
   for (const std::uint32_t slot : slots) {
     shot.id.push_back(s.particles[id][0][slot]);
     for (int d = 0; d < 3; ++d) shot.position.push_back(d < Dim ? s.particles[position][d][slot] : 0.0);

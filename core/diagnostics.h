@@ -12,7 +12,7 @@
 namespace molten {
 
 struct Diagnostics {
-  std::int64_t particles = 0, asleep = 0;
+  std::int64_t particles = 0, asleep = 0;           // of the fluid, as all that follows
   double kinetic_energy = 0, potential_energy = 0;  // J (2-D: J per m of depth); potential −m g·x
   double least_energy_share = 1, mean_energy_share = 1, largest_energy_share = 1;  // of energy_bounded_euler
   double energy_taken_by_sleep = 0;                                                // J, from the start on
@@ -28,7 +28,7 @@ struct Diagnostics {
 /// The same bits for any thread count.
 template <int Dim, class Real> Diagnostics diagnose(const State<Dim, Real>& s);
 
-/// All particles in id order with the named fields (empty: all that the run has).
+/// The fluid's particles in id order with the named fields (empty: all that the run has).
 template <int Dim, class Real>
 Snapshot take_snapshot(const State<Dim, Real>& s, const std::vector<std::string>& fields);
 

@@ -94,6 +94,34 @@ void require_sensible_integrator(const Scene& scene) {
         std::string(name_of(kind)) + " knows no walls that move, vents or outflow; use leap_frog or symplectic_euler");
 }
 
+void require_sensible_boundary_particles(const Scene& scene) {
+  const Numerics& n = scene.numerics;
+  if (!n.boundary_particles || scene.boundaries.empty()) return;
+  const std::string cure = ", or set numerics.boundary_particles = false";
+  const bool dynamic = n.boundary_particles->kind == BoundaryParticles::Kind::dynamic;
+  for (std::size_t k = 0; k < scene.boundaries.size(); ++k) {
+    const Boundary& b = scene.boundaries[k];
+    const std::string key = "boundary." + std::to_string(k);
+    if (b.shape.plane)
+      refuse(scene, key, "a plane has no end to put boundary particles on; take a box or polygon" + cure);
+    if (b.body) refuse(scene, key + ".body", "a free body cannot be made of boundary particles; leave it out" + cure);
+    if (b.motion && !dynamic)
+      refuse(scene, key + ".motion", "repulsive boundary particles stay in place; choose dynamic ones" + cure);
+  }
+  const auto require_absent = [&](bool there, const char* key) {
+    if (there) refuse(scene, key, "does not go together with dynamic boundary particles; leave it out" + cure);
+  };
+  require_absent(n.wall_support, "numerics.wall_support");
+  if (!dynamic) return;
+  require_absent(scene.fluid.heat.has_value(), "fluid.heat");
+  require_absent(!scene.vents.empty(), "vent");
+  require_absent(!scene.outflows.empty(), "outflow");
+  require_absent(n.sleep.has_value(), "numerics.sleep");
+  require_absent(n.shifting.has_value(), "numerics.shifting");
+  require_absent(n.density == DensityForm::summation, "numerics.density");
+  require_absent(n.integrator == IntegratorKind::energy_bounded_euler, "numerics.integrator");
+}
+
 /// What no rates pass has together.
 void require_one_pass(const Scene& scene, const Features& f) {
   if (!f.any_seldom()) return;
@@ -132,6 +160,7 @@ Features features_of(const Scene& scene) {
   require_sensible_sleep(scene);
   require_sensible_walls(scene);
   require_sensible_integrator(scene);
+  require_sensible_boundary_particles(scene);
   Features f;
   f.heat = scene.fluid.heat.has_value();
   f.stress = !scene.fluid.rheology.constant();
@@ -153,6 +182,10 @@ Features features_of(const Scene& scene) {
   f.wall_support = f.contact && scene.numerics.wall_support;
   f.density_diffusion = scene.numerics.density_diffusion > 0;
   f.sleep = scene.numerics.sleep.has_value();
+  if (f.contact && scene.numerics.boundary_particles) {
+    f.boundary_particles = scene.numerics.boundary_particles->kind == BoundaryParticles::Kind::dynamic;
+    f.repulsion = !f.boundary_particles;
+  }
   f.bodies = std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
                          [](const Boundary& b) { return b.motion || b.body; });
   f.vents = !scene.vents.empty();
@@ -188,6 +221,7 @@ FieldSet Features::columns() const {
   if (sleep && heat) s |= field_set(FieldList<HeatRestTime>{});
   if (sleep && heat && stress) s |= field_set(FieldList<RestTemperature>{});
   if (vents) s |= field_set(FieldList<Inlet>{});
+  if (boundary_particles) s |= field_set(FieldList<Held>{});
   return s;
 }
 
@@ -204,30 +238,34 @@ std::vector<std::string> Features::passes() const {
 }
 
 std::vector<std::string> Features::names() const {
+  const std::pair<bool, const char*> all[] = {{heat, "heat"},
+                                              {stress, smd ? "smd-viscosity" : "varying-viscosity"},
+                                              {laminar, "laminar-viscosity"},
+                                              {artificial_viscosity, "artificial-viscosity"},
+                                              {xsph, "xsph"},
+                                              {particle_sound_speed, "particle-sound-speed"},
+                                              {tensile_correction, "tensile-correction"},
+                                              {monaghan_viscosity, "monaghan-viscosity"},
+                                              {muller_viscosity, "muller-viscosity"},
+                                              {half_pressure, "half-pressure"},
+                                              {internal_energy, "internal-energy"},
+                                              {density_sum, "density-summation"},
+                                              {density_filter, "density-filter"},
+                                              {gradient_correction, "gradient-correction"},
+                                              {shifting, "shifting"},
+                                              {contact, "contact"},
+                                              {wall_support, "wall-support"},
+                                              {boundary_particles, "dynamic-boundary-particles"},
+                                              {repulsion, "repulsive-boundary-particles"},
+                                              {bodies, "moving-bodies"},
+                                              {vents, "vents"},
+                                              {outflow, "outflow"},
+                                              {density_diffusion, "density-diffusion"},
+                                              {sleep, "sleep"}};
   std::vector<std::string> n;
-  if (heat) n.push_back("heat");
-  if (stress) n.push_back(smd ? "smd-viscosity" : "varying-viscosity");
-  if (laminar) n.push_back("laminar-viscosity");
-  if (artificial_viscosity) n.push_back("artificial-viscosity");
-  if (xsph) n.push_back("xsph");
-  if (particle_sound_speed) n.push_back("particle-sound-speed");
-  if (tensile_correction) n.push_back("tensile-correction");
-  if (monaghan_viscosity) n.push_back("monaghan-viscosity");
-  if (muller_viscosity) n.push_back("muller-viscosity");
-  if (half_pressure) n.push_back("half-pressure");
-  if (internal_energy) n.push_back("internal-energy");
-  if (density_sum) n.push_back("density-summation");
-  if (density_filter) n.push_back("density-filter");
-  if (gradient_correction) n.push_back("gradient-correction");
-  if (shifting) n.push_back("shifting");
-  if (contact) n.push_back("contact");
-  if (wall_support) n.push_back("wall-support");
-  if (bodies) n.push_back("moving-bodies");
-  if (vents) n.push_back("vents");
-  if (outflow) n.push_back("outflow");
-  if (density_diffusion) n.push_back("density-diffusion");
-  if (sleep) n.push_back("sleep");
-  n.push_back(name_of(integrator));
+  for (const auto& [on, name] : all)
+    if (on) n.emplace_back(name);
+  n.emplace_back(name_of(integrator));
   return n;
 }
 

@@ -27,11 +27,13 @@ struct Features {
   bool density_filter = false;  // every so many steps
   bool gradient_correction = false;
   bool shifting = false;
-  bool contact = false;       // walls
-  bool wall_support = false;  // walls make up for what they cut off a particle's support
-  bool bodies = false;        // walls that move
-  bool vents = false;         // fluid enters
-  bool outflow = false;       // fluid is removed at planes
+  bool contact = false;             // walls
+  bool wall_support = false;        // walls make up for what they cut off a particle's support
+  bool boundary_particles = false;  // walls of particles that take part in density and pressure
+  bool repulsion = false;           // walls of particles that push
+  bool bodies = false;              // walls that move
+  bool vents = false;               // fluid enters
+  bool outflow = false;             // fluid is removed at planes
   bool density_diffusion = false;
   bool sleep = false;  // what is at rest
   IntegratorKind integrator = IntegratorKind::leap_frog;
@@ -53,7 +55,8 @@ struct Features {
 
   /// Something that only the rates pass with every term has.
   bool any_seldom() const {
-    return particle_sound_speed || tensile_correction || muller_viscosity || half_pressure || internal_energy;
+    return particle_sound_speed || tensile_correction || muller_viscosity || half_pressure || internal_energy ||
+           repulsion;
   }
 
   bool morris_viscosity() const { return laminar && !monaghan_viscosity && !muller_viscosity; }

@@ -48,6 +48,9 @@ MOLTEN_FIELD(Temperature, ExactScalar, temperature, "degrees", "temperature");
 
 MOLTEN_FIELD(Inlet, IdScalar, inlet, "1", "number of the vent that still pushes the particle; -1: none");
 
+MOLTEN_FIELD(Held, ScalarField, held, "1",
+             "0: fluid; 1: boundary particle that stays; k + 2: one that moves with body k");
+
 // What an integrator carries beside it.
 MOLTEN_FIELD(HalfVelocity, VectorField, half_velocity, "m/s", "leap-frog velocity, half a step behind");
 MOLTEN_FIELD(HalfCompression, ScalarField, half_compression, "1", "leap-frog compression, half a step behind");
@@ -106,7 +109,7 @@ using AllFields =
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
-              RestTime, HeatRestTime, RestTemperature, Inlet>;
+              RestTime, HeatRestTime, RestTemperature, Inlet, Held>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

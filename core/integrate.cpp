@@ -50,6 +50,7 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
     const Vec<Dim, Wide> before = motion.position;
     Wide bounced = mover_.move_cluster(cluster, motion, kicks);
     if (inlet_) push(slot, before, motion, bounced);
+    if (held_ && s_.features.bodies) carry(slot, before, motion);
     keep(slot, motion, bounced);
     advance_compression(slot);
     if (s_.features.internal_energy) add(internal_energy_ + slot, kick_, internal_energy_rate_ + slot);
@@ -113,6 +114,21 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
     }
   }
 
+  /// Boundary particles of a wall that moves go with it.
+  void carry(std::size_t first, const Vec<Dim, Wide>& before, ClusterMotion<Dim>& m) const {
+    for (int n = 0; n < cluster_size; ++n) {
+      if (held_[first + n] < 2) continue;
+      const RigidMotion<Dim>& motion = s_.bodies.motion(static_cast<std::size_t>(held_[first + n]) - 2);
+      Point<Dim> at;
+      for (int d = 0; d < Dim; ++d) at[d] = lane(before[d], n);
+      const Point<Dim> after = motion.after(dt_).to_world(motion.start.to_body(at));
+      for (int d = 0; d < Dim; ++d) {
+        set_lane(m.position[d], n, after[d]);
+        set_lane(m.velocity[d], n, (after[d] - at[d]) / dt_);
+      }
+    }
+  }
+
   void keep(std::size_t slot, const ClusterMotion<Dim>& m, const Wide& bounced) const {
     // The wall has already had its say on a particle that bounced.
     const Wide ahead = leap_frog ? Wide(dt_ / 2) * (Wide(1.0) - bounced) : Wide(0.0);
@@ -163,6 +179,7 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
   Real* heat_rest_time_ = p_[heat_rest_time][0];
   Real* rest_temperature_ = p_[rest_temperature][0];
   std::int64_t* inlet_ = p_[inlet][0];  // null without vents
+  const Real* held_ = p_[held][0];      // null without boundary particles
 };
 
 /// What a step has done: the square of the largest displacement (m²), and what bodies have given to particles.
@@ -187,6 +204,7 @@ template <int Dim, class Real> class Preparation {
   void of(std::size_t cluster) const {
     const std::size_t slot = cluster * cluster_size;
     s_.neighbours.localise(s_.particles, cluster);
+    if (held_) press(slot);
     store_rounded(s_.parameters.eos.term(load_double<cluster_size>(compression_ + slot)), pressure_term_ + slot);
     if (s_.features.heat)
       store_rounded(load<cluster_size>(temperature_ + slot) - ClusterLanes(s_.parameters.reference_temperature),
@@ -194,9 +212,20 @@ template <int Dim, class Real> class Preparation {
   }
 
  private:
+  /// Boundary particles do not pull.
+  void press(std::size_t first) const {
+    for (std::size_t slot = first; slot < first + cluster_size; ++slot) {
+      if (held_[slot] == 0) continue;
+      compression_[slot] = std::max(compression_[slot], Real(0));
+      if (half_compression_) half_compression_[slot] = std::max(half_compression_[slot], Real(0));
+    }
+  }
+
   State<Dim, Real>& s_;
   Real* pressure_term_ = s_.particles[pressure_term][0];
-  const Real* compression_ = s_.particles[compression][0];
+  Real* compression_ = s_.particles[compression][0];
+  Real* half_compression_ = s_.particles[half_compression][0];
+  const Real* held_ = s_.particles[held][0];  // null without boundary particles
   const double* temperature_ = s_.particles[temperature][0];
   Real* local_temperature_ = s_.particles[local_temperature][0];
 };

@@ -62,13 +62,13 @@ template <int Dim, class Real> class Mover {
 
   /// Moves one particle by a step along its rate; says whether it bounced.
   bool move(std::size_t slot, Motion<Dim>& m) const {
-    if (may_collide(slot / cluster_size)) return s_.contact.move(m, s_.clock.dt) > 0;
+    if (may_collide(slot / cluster_size) && may_bounce(slot)) return s_.contact.move(m, s_.clock.dt) > 0;
     m.position += s_.clock.dt * m.rate;
     return false;
   }
 
-  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent moves, does not count.
-  /// `kicks`: what bodies give to particles is added.
+  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent or a wall moves, does
+  /// not count. `kicks`: what bodies give to particles is added.
   ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
     if (may_collide(cluster)) {
       ClusterMotion<Dim> moved = m;  // a copy for the other function: elsewhere the motion stays in registers
@@ -82,7 +82,9 @@ template <int Dim, class Real> class Mover {
 
  private:
   bool may_collide(std::size_t cluster) const { return always_collide_ || s_.near_wall[cluster]; }
-  bool may_bounce(std::size_t slot) const { return !s_.particles.is_padding(slot) && !(inlet_ && inlet_[slot] >= 0); }
+  bool may_bounce(std::size_t slot) const {
+    return !s_.particles.is_padding(slot) && !(inlet_ && inlet_[slot] >= 0) && !(held_ && held_[slot] > 0);
+  }
 
   [[gnu::noinline]] ClusterLanes collide_cluster(std::size_t cluster, ClusterMotion<Dim>& m,
                                                  std::span<Kick<Dim>> kicks) const {
@@ -118,6 +120,7 @@ template <int Dim, class Real> class Mover {
   const State<Dim, Real>& s_;
   bool always_collide_;
   const std::int64_t* inlet_ = s_.particles[inlet][0];  // null without vents
+  const Real* held_ = s_.particles[held][0];            // null without boundary particles
 };
 
 }  // namespace molten

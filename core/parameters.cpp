@@ -140,6 +140,10 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.skin = n.skin * start.spacing;
   // Walls with support hold particles by their pressure, further off than this; contact is for what goes too fast.
   p.contact_radius = n.wall_support ? start.spacing / 4 : start.spacing / 2;
+  if (n.boundary_particles && !scene.boundaries.empty()) {
+    p.contact_radius = start.spacing / 100;  // for what gets through between the particles of a wall
+    p.boundary_every = n.boundary_particles->every;
+  }
   p.particle_mass = scene.fluid.density * measure_of_particle(scene, start);
   p.outflows = scene.outflows;
   for (int d = 0; d < Dim; ++d) p.gravity[d] = scene.gravity[d];

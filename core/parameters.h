@@ -20,7 +20,8 @@ template <int Dim> struct Parameters {
   double spacing = 0, smoothing_length = 0, support_radius = 0, skin = 0;  // m
   double particle_mass = 0;                                                // kg (2-D: kg per m of depth)
   double contact_radius = 0;                                               // m, of particles that meet walls
-  std::array<double, Dim> gravity{};                                       // m/s²
+  long long boundary_every = 1;       // steps; how often dynamic boundary particles' density follows its rate
+  std::array<double, Dim> gravity{};  // m/s²
   KernelKind kernel = KernelKind::wendland_c2;
   EquationOfState eos;
   std::optional<double> surface_potential;  // m²/s², −g·x of the surface that the fluid is at rest below, at the start

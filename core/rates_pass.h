@@ -35,6 +35,8 @@ template <int Dim, class Real> struct RatesFinish {
     Real* energy_rates = p[internal_energy_rate][0];
     const Real* viscosities = p[viscosity][0];
     const Real* compressions = p[compression][0];
+    const Real* held_by = p[held][0];  // null without boundary particles
+    bool boundary_waits = held_by && (s.clock.step + 1) % s.parameters.boundary_every != 0;
     Vec<Dim, Real> gravity = in_real<Dim, Real>(s.parameters.gravity);
     Real inverse_rest_density = s.features.density_sum ? Real(0) : static_cast<Real>(1 / s.parameters.eos.rest_density);
 
@@ -43,6 +45,9 @@ template <int Dim, class Real> struct RatesFinish {
       constexpr int I = sizeof(L) / sizeof(Real);
       L alive(Real(1)), a2(Real(0)), v2(Real(0));
       for (int n = 0; n < I; ++n) set_lane(alive, n, ids[slot + n] == padding_id ? Real(0) : Real(1));
+      // Boundary particles keep their places, and their density waits for its turn.
+      const L changing = boundary_waits ? free_lanes(slot, alive) : alive;
+      alive = free_lanes(slot, alive);
       for (int d = 0; d < Dim; ++d) {
         const L total = alive * (sums[acceleration][d] + L(gravity[d]));
         const L speed = alive * load<I>(v[d] + slot);
@@ -50,7 +55,7 @@ template <int Dim, class Real> struct RatesFinish {
         a2 += total * total;
         v2 += speed * speed;
       }
-      store(alive * L(inverse_rest_density) * sums[compression_rate], compression_rates + slot);
+      store(changing * L(inverse_rest_density) * sums[compression_rate], compression_rates + slot);
       raise(extremes.acceleration2, a2);
       raise(extremes.speed2, v2);
       if constexpr (requires { sums[temperature_rate]; })
@@ -63,6 +68,14 @@ template <int Dim, class Real> struct RatesFinish {
         const L density = L(static_cast<Real>(s.parameters.eos.rest_density)) * (L(1) + load<I>(compressions + slot));
         raise(extremes.kinematic_viscosity, alive * load<I>(viscosities + slot) * reciprocal(density));
       }
+    }
+
+    /// Those that are not held.
+    template <class L> L free_lanes(std::size_t slot, L lanes) const {
+      if (!held_by) return lanes;
+      for (int n = 0; n < static_cast<int>(sizeof(L) / sizeof(Real)); ++n)
+        if (held_by[slot + n] > 0) set_lane(lanes, n, Real(0));
+      return lanes;
     }
 
     template <class L> void keep_heat(std::size_t slot, const L& rate) {

@@ -46,6 +46,7 @@ struct Cone {
 struct Polygon {
   std::vector<std::array<double, 2>> points;  // m; counter-clockwise; in 2-D the region itself, in 3-D in the x-y plane
   double bottom = 0, top = 0;                 // m; extruded from z = bottom to z = top (3-D only)
+  bool open = false;                          // without the edge from the last point to the first (2-D boundaries)
 };
 struct Text {
   std::string string;                // UTF-8, one line
@@ -217,6 +218,12 @@ struct DensityFilter {
   long long every = 30;  // steps
 };
 
+/// Walls made of particles, for replication (boundary/boundary_particles.h).
+struct BoundaryParticles {
+  enum class Kind { dynamic, repulsive } kind = Kind::dynamic;
+  long long every = 1;  // steps; how often the dynamic ones' density follows its rate
+};
+
 /// Bounds within which a particle is at rest; defaults from the scene (parameters.cpp).
 struct SleepBounds {
   std::optional<double> speed;             // m/s
@@ -252,8 +259,9 @@ struct Numerics {
   bool gradient_correction = false;
   std::optional<Shifting> shifting;  // needs gradient_correction
   double courant_sound = 0.2, courant_viscous = 0.1, courant_force = 0.25, courant_conduction = 0.4;
-  double density_diffusion = 0;    // δ of δ-SPH; 0: no term
-  bool wall_support = false;       // walls make up for what they cut off a particle's support
+  double density_diffusion = 0;  // δ of δ-SPH; 0: no term
+  bool wall_support = false;     // walls make up for what they cut off a particle's support
+  std::optional<BoundaryParticles> boundary_particles;
   std::optional<double> fixed_dt;  // s; overrides the adaptive step
   std::optional<SleepBounds> sleep;
 };

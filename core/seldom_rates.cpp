@@ -1,5 +1,5 @@
 // The rates pass of scenes that ask for what few do: the tensile correction, Müller's viscosity, the particles' own
-// sound speeds, internal energy. Everything else that a scene may have is in it as well.
+// sound speeds, internal energy, repulsive boundary particles. Everything else that a scene may have is in it as well.
 #include "core/physics/continuity.h"
 #include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
@@ -44,18 +44,19 @@ void seldom_pass(State<Dim, Real>& s, const Terms&... terms) {
   const Features& f = s.features;
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
-  run_rates_pass(s,
-                 WithWork(f.internal_energy, OneOfPressures{f.half_pressure},
-                          ArtificialViscosity<Real, true>(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length,
-                                                          rho0, f.particle_sound_speed),
-                          TensileCorrection<Real>(f.tensile_correction, kernel_at_spacing<Dim, Real>(p)),
-                          LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
-                          MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
-                          MullerViscosity<Dim, Real>(f.muller_viscosity ? p.viscosity : 0, p.particle_mass, rho0,
-                                                     p.support_radius),
-                          StressForce<Dim, Real>(f.stress, rho0)),
-                 HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
-                 XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density), terms...);
+  const auto pushed = [&](const auto& finish) { return WithRepulsion(s.repulsion, s.particles, finish); };
+  run_rates_pass_with(s, pushed,
+                      WithWork(f.internal_energy, OneOfPressures{f.half_pressure},
+                               ArtificialViscosity<Real, true>(p.artificial_viscosity, p.eos.sound_speed,
+                                                               p.smoothing_length, rho0, f.particle_sound_speed),
+                               TensileCorrection<Real>(f.tensile_correction, kernel_at_spacing<Dim, Real>(p)),
+                               LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
+                               MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
+                               MullerViscosity<Dim, Real>(f.muller_viscosity ? p.viscosity : 0, p.particle_mass, rho0,
+                                                          p.support_radius),
+                               StressForce<Dim, Real>(f.stress, rho0)),
+                      HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
+                      XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density), terms...);
 }
 
 }  // namespace

@@ -50,6 +50,39 @@ template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
   if (features.sleep && a.loading()) mark_sleepers(*this);
 }
 
+namespace {
+
+/// Puts boundary particles into the slots from `first` on. At first they have the pressure of the fluid at rest beside
+/// them, if the fluid starts with that.
+template <int Dim, class Real>
+void hold(State<Dim, Real>& s, const std::vector<HeldPoint<Dim>>& points, std::size_t first, const Start& start) {
+  Particles<Dim, Real>& p = s.particles;
+  const Parameters<Dim>& q = s.parameters;
+  Point<Dim> lower = Point<Dim>::Constant(std::numeric_limits<double>::max()), upper = -lower;
+  for (const auto& x : start.position)
+    for (int d = 0; d < Dim; ++d) lower[d] = std::min(lower[d], x[d]), upper[d] = std::max(upper[d], x[d]);
+  const Point<Dim> margin = Point<Dim>::Constant(q.smoothing_length);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::size_t slot = first + k;
+    const HeldPoint<Dim>& point = points[k];
+    const Point<Dim> x =
+        point.body < 0 ? point.at : s.bodies.motion(static_cast<std::size_t>(point.body)).start.to_world(point.at);
+    p[id][0][slot] = static_cast<std::int64_t>(slot);
+    p[held][0][slot] = static_cast<Real>(point.body + 2);
+    double depth = q.surface_potential.value_or(0);
+    for (int d = 0; d < Dim; ++d) {
+      p[position][d][slot] = x[d];
+      depth += q.gravity[d] * x[d];
+    }
+    const bool beside = ((x - lower + margin).array() >= 0).all() && ((upper + margin - x).array() >= 0).all();
+    if (!q.surface_potential || !beside || depth < 0) continue;
+    p[compression][0][slot] = static_cast<Real>(q.eos.compression_at_rest(depth));
+    if (p.has(half_compression)) p[half_compression][0][slot] = p[compression][0][slot];
+  }
+}
+
+}  // namespace
+
 template <int Dim, class Real>
 State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& parameters, Surroundings<Dim> around,
                             const Start& start) {
@@ -68,14 +101,16 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
       {}};
   if (features.wall_support) s.wall_support = {s.contact, s.bodies, parameters};
   Particles<Dim, Real>& p = s.particles;
-  const std::size_t count = start.position.size();
+  const std::size_t fluid = start.position.size(), count = fluid + around.held.size();
+  s.repulsion = std::move(around.repulsion);
+  s.boundary_count = around.held.size();
   p.resize((count + cluster_size - 1) / cluster_size * cluster_size, count);
   for_each_field([&]<class F>(F) {
     if (!p.has(F{})) return;
     for (auto* column : p[F{}].c) std::fill_n(column, p.slots(), std::remove_pointer_t<decltype(column)>(0));
   });
   std::fill_n(p[id][0], p.slots(), padding_id);
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < fluid; ++k) {
     p[id][0][k] = static_cast<std::int64_t>(k);
     for (int d = 0; d < Dim; ++d) {
       p[position][d][k] = start.position[k][d];
@@ -90,6 +125,7 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
       if (p.has(half_compression)) p[half_compression][0][k] = p[compression][0][k];
     }
   }
+  if (features.boundary_particles) hold(s, around.held, fluid, start);
   if (features.vents) open_vents(s);
   sort_and_list(s);
   return s;

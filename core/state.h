@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "core/bodies.h"
+#include "core/boundary/boundary_particles.h"
 #include "core/boundary/contact.h"
+#include "core/boundary/repulsion.h"
 #include "core/boundary/wall_support.h"
 #include "core/features.h"
 #include "core/neighbours.h"
@@ -48,6 +50,8 @@ template <int Dim> struct Surroundings {
   Contact<Dim> contact;
   Bodies<Dim> bodies;
   Vents<Dim> vents;
+  std::vector<HeldPoint<Dim>> held{};  // boundary particles that take part
+  Repulsion<Dim> repulsion{};          // of those that push
 };
 
 template <int Dim, class Real> struct State {
@@ -64,11 +68,13 @@ template <int Dim, class Real> struct State {
   Extremes extremes;
   Timer timer;
   Sleep sleep{};
+  Repulsion<Dim> repulsion{};      // empty without the feature
+  std::size_t boundary_count = 0;  // of the particles, those that are walls
 
   void archive(Archive& a);
   std::size_t bytes() const {
     return particles.bytes() + neighbours.bytes() + near_wall.capacity() + wall_support.bytes() +
-           sleep.still.capacity() + sleep.cold.capacity();
+           sleep.still.capacity() + sleep.cold.capacity() + repulsion.bytes();
   }
 };
 

@@ -46,6 +46,8 @@ SIZES = {
     "cruchaga-a": ([18, 36, 72], 36), "cruchaga-b": ([18, 36, 72], 36), "lobovsky-front": ([30, 60, 120], 40),
     "lobovsky-pressure": ([30, 60, 120], 40), "martin-moyce": ([15, 30, 60], 30), "koshizuka": ([20, 40, 80], 40),
     "kleefsman": ([12000, 100000, 400000], 12000),
+    "dias-a": ([18, 36, 72], 18), "dias-b": ([18, 36, 72], 18), "dias-lobovsky": ([47, 94, 187], 24),
+    "dias-tank": ([17, 33], 17),
 }
 FULL_SETTINGS = {"kleefsman": ["end_time=6"]}  # quick: 2 s, the default
 QUICK_SETTINGS = {"hydrostatic-bowl": ["end_time=1.2"]}  # 20 000 triangles of wall
@@ -67,7 +69,8 @@ def plan(quick, cases):
     for case in cases:
         sizes, small = SIZES.get(case, ([16, 32], 16))
         if quick:
-            runs.append((case, small, "molten", QUICK_SETTINGS.get(case, [])))
+            preset = "dias" if case.startswith("dias-") else "molten"
+            runs.append((case, small, preset, QUICK_SETTINGS.get(case, [])))
             continue
         more = FULL_SETTINGS.get(case, [])
         runs += [(case, size, preset, more) for preset in PRESETS for size in sizes]

@@ -144,6 +144,18 @@ TEST(Features, WallsAddTheirPass) {
   expect_adds([](Scene& s) { s.boundaries.emplace_back(); }, {{}, {"integrate"}, {"integrate and collide"}});
 }
 
+TEST(Features, BoundaryParticlesAddAColumnWhereThereAreWalls) {
+  const auto dynamic = [](Scene& s) { s.numerics.boundary_particles = BoundaryParticles{}; };
+  expect_adds(dynamic, {});
+  const auto walls = [](Scene& s) { s.boundaries.emplace_back().shape.box.emplace(); };
+  expect_adds([&](Scene& s) { dynamic(s), walls(s); }, {{"held"}, {"integrate"}, {"integrate and collide"}});
+  const auto repulsive = [&](Scene& s) {
+    walls(s);
+    s.numerics.boundary_particles = BoundaryParticles{BoundaryParticles::Kind::repulsive};
+  };
+  expect_adds(repulsive, {{}, {"integrate"}, {"integrate and collide"}});
+}
+
 TEST(Features, SupportAndDensityDiffusionAddNoColumnAndNoPass) {
   expect_adds([](Scene& s) { s.numerics.density_diffusion = 0.1; }, {});
   expect_adds([](Scene& s) { s.numerics.wall_support = true; }, {});

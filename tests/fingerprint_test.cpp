@@ -159,6 +159,7 @@ const std::vector<Change> changes = {
     {"numerics.courant.force=0.1"},
     {"numerics.courant.conduction=0.1"},
     {"numerics.density_diffusion=0.1"},
+    {"numerics.boundary_particles={ kind = \"repulsive\" }", {ball}},
     {support},
     {"numerics.fixed_dt=1e-5"},
     {"numerics.sleep={}"},

@@ -28,5 +28,9 @@ Case lobovsky_pressure();
 Case martin_moyce();
 Case koshizuka();
 Case kleefsman();
+Case dias_a();
+Case dias_b();
+Case dias_lobovsky();
+Case dias_tank();
 
 }  // namespace molten::study

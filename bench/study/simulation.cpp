@@ -24,7 +24,7 @@ template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, con
   State<Dim, Real> s = make_state<Dim, Real>(features_of(scene), p, build_surroundings(scene, start, p), start);
   if (setup.pressure.empty()) return s;
   for (std::size_t slot = 0; slot < s.particles.slots(); ++slot) {
-    if (s.particles.is_padding(slot)) continue;
+    if (s.particles.is_padding(slot) || s.particles[id][0][slot] >= std::ssize(setup.pressure)) continue;
     const auto delta = static_cast<Real>(p.eos.compression(setup.pressure[s.particles[id][0][slot]]));
     s.particles[compression][0][slot] = delta;
     if (s.particles.has(half_compression)) s.particles[half_compression][0][slot] = delta;
@@ -53,8 +53,13 @@ template <int Dim, class Real> class Engine : public Simulation {
     c.sound_speed = p.eos.sound_speed;
     const auto x = state_.particles[position];
     const auto v = state_.particles[velocity];
+    const Real* held_by = state_.particles[held][0];  // null without boundary particles
     for (std::size_t slot = 0; slot < state_.particles.slots(); ++slot) {
       if (state_.particles.is_padding(slot)) continue;
+      if (held_by && held_by[slot] > 0) {
+        c.wall_pressure.push_back(p.eos.pressure(double(state_.particles[compression][0][slot])));
+        continue;
+      }
       Triple place{}, speed{};
       for (int d = 0; d < Dim; ++d) place[d] = x[d][slot], speed[d] = v[d][slot];
       const double delta = state_.particles[compression][0][slot];

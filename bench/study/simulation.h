@@ -15,7 +15,7 @@ namespace molten::study {
 
 using Triple = std::array<double, 3>;
 
-/// Every particle at one moment; z = 0 in 2-D.
+/// Every particle of the fluid at one moment; z = 0 in 2-D.
 struct Cloud {
   double time = 0, spacing = 0;            // s, m
   double sound_speed = 0;                  // m/s
@@ -24,6 +24,7 @@ struct Cloud {
   std::vector<Triple> position, velocity;  // m, m/s
   std::vector<double> density, pressure;   // kg/m³, Pa
   std::vector<double> temperature;         // empty without heat
+  std::vector<double> wall_pressure;       // Pa, of boundary particles
   std::vector<SnapshotBody> bodies;
 
   std::size_t count() const { return id.size(); }

@@ -35,13 +35,33 @@ struct DensityFilterSums {
   template <class Pair, class I, class J, class Out>
   [[gnu::always_inline]] void operator()(const Pair& ij, const I&, const J& j, Out& out) const {
     using L = std::decay_t<decltype(ij.r2)>;
-    const L delta = j[compression], volume = reciprocal(L(1) + delta);
+    const L delta = j[compression];
+    add(ij, delta, reciprocal(L(1) + delta), out);
+  }
+
+  template <class Pair, class L, class Out>
+  [[gnu::always_inline]] void add(const Pair& ij, const L& delta, const L& volume, Out& out) const {
     out.W(kernel_sum, volume);
     out.W(kernel_mean, volume * delta);
     if (!mls) return;
     out.W(kernel_moment, volume * ij.x);
     out.W(kernel_moment_of_mean, (volume * delta) * ij.x);
     out.W(kernel_spread, twice_symmetric((L(0.5) * volume) * ij.x, ij.x));
+  }
+};
+
+/// The same over the fluid alone, where there are boundary particles.
+struct FluidFilterSums {
+  using Reads = FieldList<Compression, Held>;
+  using Sums = DensityFilterSums::Sums;
+  static constexpr bool on = true;
+  bool mls = false;
+
+  template <class Pair, class I, class J, class Out>
+  [[gnu::always_inline]] void operator()(const Pair& ij, const I&, const J& j, Out& out) const {
+    using L = std::decay_t<decltype(ij.r2)>;
+    const L delta = j[compression], fluid = L(1) - min(L(j[held]), L(1));
+    DensityFilterSums{mls}.add(ij, delta, fluid * reciprocal(L(1) + delta), out);
   }
 };
 

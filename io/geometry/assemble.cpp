@@ -253,7 +253,8 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
       const std::vector<Vec2> line = outline(boundary.shape, facet_edge * spacing);
       const auto n = static_cast<std::int32_t>(line.size());
       for (const Vec2& x : line) wall.vertices.push_back(x);
-      for (std::int32_t k = 0; k < n; ++k)
+      const bool open = boundary.shape.polygon && boundary.shape.polygon->open;
+      for (std::int32_t k = 0; k < (open ? n - 1 : n); ++k)
         boundary.inside ? wall.facets.push_back({k, (k + 1) % n}) : wall.facets.push_back({(k + 1) % n, k});
     }
     require_size(scene, walls.size(), wall, spacing);
@@ -262,14 +263,63 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
   return walls;
 }
 
+namespace {
+
+/// −g·x of the start's surface and of the lowest boundary particle.
+template <int Dim>
+StillWater still_water(const Start& start, const Parameters<Dim>& p, const std::vector<RepulsivePoint<Dim>>& points) {
+  const Eigen::Map<const Point<Dim>> g(p.gravity.data());
+  StillWater water{-1e300, 1e300};
+  for (const auto& x : start.position)
+    water.surface = std::max(water.surface, g.norm() * start.spacing / 2 - g.dot(Point<Dim>(x.data())));
+  for (const auto& b : points) water.bottom = std::min(water.bottom, -g.dot(b.at));
+  return water;
+}
+
+/// A boundary particle beyond the domain would be dropped with the first sort.
+template <int Dim>
+void require_in_domain(const Scene& scene, const std::vector<HeldPoint<Dim>>& held, const Parameters<Dim>& p) {
+  for (const HeldPoint<Dim>& point : held)
+    for (int d = 0; d < Dim; ++d)
+      if (point.body < 0 && (point.at[d] < p.domain.lower[d] || point.at[d] > p.domain.upper[d]))
+        refuse(scene, "scene.domain", "leaves boundary particles outside; widen it by two spacings");
+}
+
+template <int Dim>
+std::vector<HeldPoint<Dim>> build_held(const Scene& scene, const Start& start, const Parameters<Dim>& p,
+                                       const std::vector<Wall<Dim>>& walls) {
+  const auto& asked = scene.numerics.boundary_particles;
+  if (!asked || asked->kind != BoundaryParticles::Kind::dynamic) return {};
+  std::vector<HeldPoint<Dim>> held = held_points(walls, held_pitch<Dim>(start.spacing));
+  require_in_domain(scene, held, p);
+  return held;
+}
+
+template <int Dim>
+Repulsion<Dim> build_repulsion(const Scene& scene, const Start& start, const Parameters<Dim>& p,
+                               const std::vector<Wall<Dim>>& walls) {
+  const auto& asked = scene.numerics.boundary_particles;
+  if (!asked || asked->kind != BoundaryParticles::Kind::repulsive || walls.empty()) return {};
+  auto points = repulsive_points(walls, start.spacing);
+  const StillWater water = still_water(start, p, points);
+  return {std::move(points), p, water};
+}
+
+}  // namespace
+
 template <int Dim>
 Surroundings<Dim> build_surroundings(const Scene& scene, const Start& start, const Parameters<Dim>& p) {
   std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
   Bodies<Dim> bodies = take_bodies(scene, walls);
   require_stable(scene, walls, bodies, start.spacing);
+  std::vector<HeldPoint<Dim>> held = build_held(scene, start, p, walls);
+  Repulsion<Dim> repulsion = build_repulsion(scene, start, p, walls);
   Contact<Dim> contact(std::move(walls), p.contact_radius, p.support_radius);
   bodies.place(contact);
-  return {std::move(contact), std::move(bodies), build_vents<Dim>(scene, start, p.support_radius)};
+  Surroundings<Dim> around{std::move(contact), std::move(bodies), build_vents<Dim>(scene, start, p.support_radius)};
+  around.held = std::move(held);
+  around.repulsion = std::move(repulsion);
+  return around;
 }
 
 template Surroundings<2> build_surroundings(const Scene&, const Start&, const Parameters<2>&);

@@ -88,6 +88,11 @@ void add_one(Hash& hash, const DensityFilter& f) {
   add(hash, kind, every);
 }
 
+void add_one(Hash& hash, const BoundaryParticles& b) {
+  const auto& [kind, every] = b;
+  add(hash, kind, every);
+}
+
 void add_one(Hash& hash, const SleepBounds& s) {
   const auto& [speed, density_rate, temperature_rate, temperature, after] = s;
   add(hash, speed, density_rate, temperature_rate, temperature, after);
@@ -99,12 +104,12 @@ void add_one(Hash& hash, const Numerics& n) {
                artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, internal_energy, xsph,
                stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction,
                shifting, courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion,
-               wall_support, fixed_dt, sleep] = n;
+               wall_support, boundary_particles, fixed_dt, sleep] = n;
   add(hash, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
       artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, internal_energy, xsph, stiffness,
       density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction, shifting,
-      courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion, wall_support, fixed_dt,
-      sleep);
+      courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion, wall_support,
+      boundary_particles, fixed_dt, sleep);
 }
 
 void add_one(Hash& hash, const Box& b) {

@@ -71,6 +71,10 @@ template <int Dim, class Real> void print_run(const Scene& scene, const Features
       static_cast<double>(start.position.size()) * 4 * (8 + static_cast<double>(available_fields(features).size()) + 2);
   fmt::print("particles         {} (mass {:.4g} kg each, spacing {:.4g} m)\n", s.particles.count(), p.particle_mass,
              p.spacing);
+  if (features.boundary_particles)
+    fmt::print("of these          {} of fluid, {} of boundaries\n", s.particles.count() - s.boundary_count,
+               s.boundary_count);
+  if (features.repulsion) fmt::print("beside them       {} that boundaries push with\n", s.repulsion.count());
   fmt::print("smoothing length  {:.4g} m, support radius {:.4g} m, {:.1f} neighbours on average\n", p.smoothing_length,
              p.support_radius, static_cast<double>(count_pairs(s)) / static_cast<double>(s.particles.count()));
   fmt::print("sound speed       {:.4g} m/s\n", p.eos.sound_speed);

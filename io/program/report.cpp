@@ -90,6 +90,7 @@ void write_summary(const std::filesystem::path& folder, const Summary& s) {
                                  {"state_bytes", s.state_bytes},
                                  {"peak_memory_bytes", peak_memory_bytes()},
                                  {"passes", s.passes}};
+  if (s.boundary_particles) json["boundary_particles"] = *s.boundary_particles;
   if (s.energy_taken_by_sleep) json["energy_taken_by_sleep_J"] = *s.energy_taken_by_sleep;
   write_json(folder / "summary.json", json);
 }

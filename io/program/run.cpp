@@ -189,6 +189,8 @@ template <int Dim, class Real> class Runner {
     s.status = status;
     s.particles = static_cast<std::int64_t>(state_.particles.count());
     s.particles_asleep = state_.sleep.asleep;
+    if (state_.features.boundary_particles) s.boundary_particles = static_cast<std::int64_t>(state_.boundary_count);
+    if (state_.features.repulsion) s.boundary_particles = static_cast<std::int64_t>(state_.repulsion.count());
     if (state_.features.sleep) s.energy_taken_by_sleep = state_.sleep.taken_energy;
     s.particles_lost = static_cast<std::int64_t>(state_.neighbours.dropped());
     s.steps = state_.clock.step;

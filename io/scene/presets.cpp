@@ -62,7 +62,8 @@ Numerics queiroz() {
 /// Dias 2017 ([D]), chapters 4 to 6, made with SPHysics 2.2: Wendland kernel with h = 0.92 √2 spacings,
 /// predictor-corrector, Tait with γ = 7 and the particles' own sound speeds, XSPH with 0.5 on positions, density
 /// filtered every 30 steps (MLS; Shepard by density_filter.kind), Courant number 0.2 for sound and forces, artificial
-/// viscosity 0.2 (0.1 to 0.3 there), no tensile correction.
+/// viscosity 0.2 (0.1 to 0.3 there), no tensile correction; walls of dynamic boundary particles, as its numbers of
+/// particles show, whose density follows its rate every 15th step.
 Numerics dias() {
   Numerics numerics;
   numerics.preset = "dias";
@@ -75,6 +76,7 @@ Numerics dias() {
   numerics.artificial_viscosity = 0.2;
   numerics.xsph = Xsph{Xsph::Form::position, 0.5};
   numerics.density_filter = DensityFilter{DensityFilter::Kind::mls, 30};
+  numerics.boundary_particles = BoundaryParticles{BoundaryParticles::Kind::dynamic, 15};
   numerics.courant_sound = 0.2;
   numerics.courant_force = 0.2;
   return numerics;

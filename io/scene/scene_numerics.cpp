@@ -33,6 +33,7 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "density_kernel",
                                         "stiffness",
                                         "wall_support",
+                                        "boundary_particles",
                                         "density_diffusion",
                                         "sleep"};
 
@@ -116,6 +117,26 @@ void read_density_filter(const TomlReader& keys, Numerics& numerics) {
   numerics.density_filter = filter;
 }
 
+void read_boundary_particles(const TomlReader& keys, Numerics& numerics) {
+  const toml::node* node = keys.node("boundary_particles");
+  if (node == nullptr) return;
+  if (node->is_boolean()) {
+    if (*node->value<bool>())
+      keys.fail("boundary_particles", "true says too little; give { kind = \"dynamic\" } or { kind = \"repulsive\" }");
+    numerics.boundary_particles.reset();
+    return;
+  }
+  using Kind = BoundaryParticles::Kind;
+  const TomlReader table = *keys.table("boundary_particles", {"kind", "every"});
+  table.require("kind", "give \"dynamic\" or \"repulsive\"");
+  BoundaryParticles particles;
+  table.choice<Kind>("kind", particles.kind, {{"dynamic", Kind::dynamic}, {"repulsive", Kind::repulsive}});
+  if (particles.kind == Kind::repulsive && table.has("every"))
+    table.fail("every", "is for the density of dynamic ones; leave it out");
+  table.whole("every", particles.every, 1, 1000000);
+  numerics.boundary_particles = particles;
+}
+
 void read_state_equation(const TomlReader& keys, Numerics& numerics) {
   if (numerics.state_equation != StateEquation::tait && keys.has("gamma"))
     keys.fail("gamma", "has no effect with state_equation other than \"tait\"; leave it out");
@@ -193,6 +214,7 @@ Numerics read_numerics(const TomlReader& root, const Scene& scene) {
   read_shifting(*keys, numerics);
   read_courant(*keys, numerics);
   keys->flag("wall_support", numerics.wall_support);
+  read_boundary_particles(*keys, numerics);
   keys->number("density_diffusion", numerics.density_diffusion, Range{0, 1, true, ""});
   keys->number("fixed_dt", numerics.fixed_dt, Range::positive("s"));
   read_sleep(*keys, numerics);

@@ -125,7 +125,7 @@ void check_simple(const TomlReader& keys, const std::vector<Point>& points) {
 
 Polygon read_polygon(const TomlReader& table, int dimensions) {
   constexpr std::size_t most_points = 2000;  // checked edge against edge
-  const TomlReader keys = *table.table("polygon", {"points", "bottom", "top"});
+  const TomlReader keys = *table.table("polygon", {"points", "bottom", "top", "open"});
   Polygon polygon;
   keys.require("points", "give [[x, y], [x, y], ...] in m");
   keys.points("points", polygon.points);
@@ -136,6 +136,8 @@ Polygon read_polygon(const TomlReader& table, int dimensions) {
   const double area = signed_area(polygon.points);
   if (area == 0) keys.fail("points", "encloses nothing; give an outline with an area");
   if (area < 0) std::reverse(polygon.points.begin(), polygon.points.end());
+  if (dimensions == 3 && keys.has("open")) keys.fail("open", "is for 2-D scenes; take a mesh that is open");
+  keys.flag("open", polygon.open);
   for (const std::string_view key : {"bottom", "top"}) {
     if (dimensions == 2 && keys.has(key)) keys.fail(key, "is for 3-D scenes; leave it out");
     if (dimensions == 3) keys.require(key, "give the z of both ends, bottom and top, in m");
@@ -242,7 +244,10 @@ Shape read_shape(const TomlReader& table, int dimensions, ShapeUse use) {
   if (key == "box") shape.box = read_box(table, "box", dimensions);
   if (key == "cylinder") shape.cylinder = read_cylinder(table, dimensions);
   if (key == "cone") shape.cone = read_cone(table, dimensions);
-  if (key == "polygon") shape.polygon = read_polygon(table, dimensions);
+  if (key == "polygon") {
+    shape.polygon = read_polygon(table, dimensions);
+    if (shape.polygon->open && use == ShapeUse::fluid) table.fail(key, "is open; fluid needs a closed one");
+  }
   if (key == "text") shape.text = read_text(table);
   if (key == "plane") shape.plane = read_plane(table, dimensions);
   if (key == "terrain") shape.terrain = read_terrain_keys(table);
