@@ -4,6 +4,7 @@
 #include "core/physics/gradient_correction.h"
 #include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
+#include "core/physics/pairwise_stress.h"
 #include "core/physics/shifting.h"
 #include "core/physics/viscous_stress.h"
 #include "core/physics/xsph.h"
@@ -65,13 +66,15 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
   constexpr bool corrected = true;
-  run_rates_pass_at_walls(
-      s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
-      ShiftTransport<Real>(f.shifting, rho0), LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
-      MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
-      StressForce<Dim, Real>(f.stress, rho0), HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
-      DensityDiffusion<Dim, Real>(p.density_diffusion, p.smoothing_length, p.eos, p.gravity),
-      XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
+  run_rates_pass_at_walls(s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
+                          ShiftTransport<Real>(f.shifting, rho0),
+                          LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
+                          MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
+                          StressForce<Dim, Real>(f.stress && !f.pairwise_stress, rho0),
+                          PairwiseStress<Dim, Real>(f.pairwise_stress, rho0),
+                          HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
+                          DensityDiffusion<Dim, Real>(p.density_diffusion, p.smoothing_length, p.eos, p.gravity),
+                          XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)                \

@@ -49,6 +49,9 @@ void require_sensible_numerics(const Scene& scene) {
            "is that of state_equation \"tait\" with gamma = 7; use them or leave it out");
   if (n.shifting && !n.gradient_correction)
     refuse(scene, "numerics.shifting", "needs corrected gradients; add gradient_correction = true to [numerics]");
+  if (n.stress_form == StressForm::pairwise && !scene.fluid.rheology.constant() && !n.gradient_correction)
+    refuse(scene, "numerics.stress_form",
+           "\"pairwise\" needs corrected gradients; add gradient_correction = true to [numerics]");
   if (n.internal_energy && n.integrator == IntegratorKind::energy_bounded_euler)
     refuse(scene, "numerics.internal_energy",
            "takes up the work of whole forces, and energy_bounded_euler lets parts of them act; leave it out or choose "
@@ -158,6 +161,7 @@ Features features_of(const Scene& scene) {
   f.vents = !scene.vents.empty();
   f.outflow = !scene.outflows.empty();
   f.integrator = scene.numerics.integrator;
+  f.pairwise_stress = f.stress && scene.numerics.stress_form == StressForm::pairwise && !f.any_seldom();
   require_one_pass(scene, f);
   return f;
 }
@@ -177,12 +181,14 @@ FieldSet Features::columns() const {
   if (stages() > 2) s |= field_set(FieldList<PositionSlope, VelocitySlope, CompressionSlope>{});
   if (stages() > 2 && heat) s |= field_set(FieldList<TemperatureSlope>{});
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
-  if (stress) s |= field_set(FieldList<Viscosity, Stress>{});
+  if (stress) s |= field_set(FieldList<Viscosity>{});
+  if (stress && !pairwise_stress) s |= field_set(FieldList<Stress>{});
+  if (pairwise_stress) s |= field_set(FieldList<StrainRate, Vorticity, Thinning>{});
   if (xsph) s |= field_set(FieldList<XsphVelocity>{});
   if (internal_energy) s |= field_set(FieldList<InternalEnergy, InternalEnergyRate>{});
   if (density_filter) s |= field_set(FieldList<FilteredCompression>{});
   if (gradient_correction) s |= field_set(FieldList<Correction>{});
-  if (gradient_correction && (heat || laminar)) s |= field_set(FieldList<LaplacianCorrection>{});
+  if (gradient_correction && (heat || laminar || pairwise_stress)) s |= field_set(FieldList<LaplacianCorrection>{});
   if (shifting) s |= field_set(FieldList<ShiftVelocity>{});
   if (sleep) s |= field_set(FieldList<RestTime>{});
   if (sleep && heat) s |= field_set(FieldList<HeatRestTime>{});
@@ -214,6 +220,7 @@ std::vector<std::string> Features::names() const {
   if (tensile_correction) n.push_back("tensile-correction");
   if (monaghan_viscosity) n.push_back("monaghan-viscosity");
   if (muller_viscosity) n.push_back("muller-viscosity");
+  if (pairwise_stress) n.push_back("pairwise-stress");
   if (half_pressure) n.push_back("half-pressure");
   if (internal_energy) n.push_back("internal-energy");
   if (density_sum) n.push_back("density-summation");

@@ -11,10 +11,11 @@
 namespace molten {
 
 struct Features {
-  bool heat = false;     // temperature and its conduction
-  bool stress = false;   // viscosity that varies: strain-rate pass and stress
-  bool smd = false;      // that of de Souza Mendes and Dutra
-  bool laminar = false;  // constant viscosity
+  bool heat = false;             // temperature and its conduction
+  bool stress = false;           // viscosity that varies: strain-rate pass and stress
+  bool pairwise_stress = false;  // its form for corrected gradients
+  bool smd = false;              // that of de Souza Mendes and Dutra
+  bool laminar = false;          // constant viscosity
   bool artificial_viscosity = false;
   bool particle_sound_speed = false;
   bool tensile_correction = false;

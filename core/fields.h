@@ -85,8 +85,11 @@ MOLTEN_FIELD(LaplacianCorrection, StepScalar, laplacian_correction, "1", "factor
 MOLTEN_FIELD(ShiftVelocity, StepVector, shift_velocity, "m/s", "velocity of the particle less that of the fluid");
 MOLTEN_FIELD(XsphVelocity, StepVector, xsph_velocity, "m/s", "XSPH correction of the velocity, before its factor");
 
-// Sums that a pass uses up itself; never a column.
 MOLTEN_FIELD(StrainRate, StepTensor, strain_rate, "1/s", "rate of strain, grad v + its transpose");
+MOLTEN_FIELD(Vorticity, StepVector, vorticity, "1/s", "curl of the velocity; 2-D: the first component");
+MOLTEN_FIELD(Thinning, StepScalar, thinning, "1", "-d ln viscosity / d ln strain rate, halved");
+
+// Sums that a pass uses up itself; never a column.
 MOLTEN_FIELD(Moment, StepTensor, moment, "kg/m3", "sum of m_j grad W times x_ij, for the correction");
 MOLTEN_FIELD(CrowdingGradient, StepVector, crowding_gradient, "kg/m4", "sum of m_j grad W, for shifting");
 MOLTEN_FIELD(KernelSum, StepScalar, kernel_sum, "kg/m3", "sum of m W, with weights");
@@ -106,7 +109,7 @@ using AllFields =
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
-              RestTime, HeatRestTime, RestTemperature, Inlet>;
+              RestTime, HeatRestTime, RestTemperature, Inlet, StrainRate, Vorticity, Thinning>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

@@ -199,6 +199,7 @@ enum class IntegratorKind {
   energy_bounded_euler
 };
 enum class ViscosityForm { morris, monaghan, muller };
+enum class StressForm { summed, pairwise };
 enum class Precision { single, double_ };
 enum class Resort { when_due, each_step };
 
@@ -241,6 +242,7 @@ struct Numerics {
   bool particle_sound_speed = false;  // c_i in the artificial viscosity; Tait with γ = 7
   bool tensile_correction = false;
   ViscosityForm viscosity_form = ViscosityForm::morris;  // of a constant viscosity
+  StressForm stress_form = StressForm::summed;           // of a viscosity that varies
   bool internal_energy = false;
   std::optional<Xsph> xsph;
   std::optional<double> stiffness;  // k of the ideal gas, m²/s²; default: the square of the sound speed's default

@@ -104,6 +104,16 @@ TEST(Features, HeatAddsItsColumns) {
 TEST(Features, VaryingViscosityAddsItsPass) {
   expect_adds([](Scene& s) { s.fluid.rheology.model = Rheology::Model::smd; },
               {{"viscosity", "stress"}, {}, {"viscosity"}});
+  expect_adds(
+      [](Scene& s) {
+        s.fluid.rheology.model = Rheology::Model::smd;
+        s.numerics.gradient_correction = true;
+        s.numerics.stress_form = StressForm::pairwise;
+      },
+      {{"viscosity", "correction", "laplacian_correction", "strain_rate", "vorticity", "thinning"},
+       {},
+       {"corrections", "viscosity"}});
+  expect_adds([](Scene& s) { s.numerics.stress_form = StressForm::pairwise; }, {});  // nothing to act on
 }
 
 TEST(Features, ConstantViscosityAddsNoColumn) {
@@ -224,6 +234,21 @@ TEST(Features, RefusesWhatMakesNoSense) {
   expect_refused(with(IntegratorKind::runge_kutta_4, moves), "numerics.integrator: runge-kutta-4 knows no walls that");
   expect_refused(with(IntegratorKind::energy_bounded_euler, vent), "numerics.integrator: energy-bounded-euler knows");
   expect_refused(with(IntegratorKind::predictor_corrector, outflow), "numerics.integrator: predictor-corrector knows");
+}
+
+TEST(Features, RefusesAPairwiseStressWithoutWhatItNeeds) {
+  const auto pairwise = [](Scene& s) {
+    s.fluid.rheology.model = Rheology::Model::smd;
+    s.numerics.stress_form = StressForm::pairwise;
+  };
+  expect_refused(pairwise, "numerics.stress_form: \"pairwise\" needs corrected gradients; add gradient_cor");
+  const auto corrected = [&](Scene& s) { pairwise(s), s.numerics.gradient_correction = true; };
+  EXPECT_EQ(refusal(corrected), "");
+  Scene replica = minimal();  // with methods kept for replication it is the sum of stresses
+  corrected(replica);
+  EXPECT_TRUE(features_of(replica).pairwise_stress);
+  replica.numerics.tensile_correction = true;
+  EXPECT_FALSE(features_of(replica).pairwise_stress);
 }
 
 TEST(Features, RefusesADensityBySummationWithWhatActsOnItsRate) {

@@ -140,6 +140,7 @@ const std::vector<Change> changes = {
     {"numerics.particle_sound_speed=true"},
     {"numerics.viscosity_form=\"muller\""},
     {"numerics.viscosity_form=\"monaghan\""},
+    {"numerics.stress_form=\"pairwise\""},
     {"numerics.tensile_correction=true"},
     {"numerics.internal_energy=true"},
     {"numerics.half_pressure=true"},

@@ -96,15 +96,15 @@ void add_one(Hash& hash, const SleepBounds& s) {
 /// Without the preset's name: its numbers count.
 void add_one(Hash& hash, const Numerics& n) {
   const auto& [preset, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
-               artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, internal_energy, xsph,
-               stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction,
-               shifting, courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion,
-               wall_support, fixed_dt, sleep] = n;
+               artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, stress_form,
+               internal_energy, xsph, stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter,
+               gradient_correction, shifting, courant_sound, courant_viscous, courant_force, courant_conduction,
+               density_diffusion, wall_support, fixed_dt, sleep] = n;
   add(hash, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
-      artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, internal_energy, xsph, stiffness,
-      density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction, shifting,
-      courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion, wall_support, fixed_dt,
-      sleep);
+      artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, stress_form, internal_energy,
+      xsph, stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction,
+      shifting, courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion, wall_support,
+      fixed_dt, sleep);
 }
 
 void add_one(Hash& hash, const Box& b) {

@@ -28,6 +28,7 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "tensile_correction",
                                         "internal_energy",
                                         "viscosity_form",
+                                        "stress_form",
                                         "half_pressure",
                                         "energy_surplus",
                                         "density_kernel",
@@ -139,6 +140,8 @@ void read_seldom(const TomlReader& keys, Numerics& numerics) {
   keys.choice<ViscosityForm>(
       "viscosity_form", numerics.viscosity_form,
       {{"morris", ViscosityForm::morris}, {"monaghan", ViscosityForm::monaghan}, {"muller", ViscosityForm::muller}});
+  keys.choice<StressForm>("stress_form", numerics.stress_form,
+                          {{"summed", StressForm::summed}, {"pairwise", StressForm::pairwise}});
 }
 
 void read_shifting(const TomlReader& keys, Numerics& numerics) {

@@ -53,6 +53,13 @@ TEST(StudyOrder, StartUpBetweenWallsConvergesInFirstOrder) {
   }
 }
 
+TEST(StudyOrder, YieldingChannelConvergesFasterThanInFirstOrder) {
+  const Pair p = errors_of("smd-channel", 8, "internal", {"walls=1"});
+  EXPECT_GT(p.order(), 1.5);
+  EXPECT_LT(p.fine, 0.015);
+  EXPECT_LT(error_of("smd-channel", 16, "internal"), 0.01);  // periodic
+}
+
 TEST(StudyOrder, StandingWaveDecaysAsItShould) {
   const Pair p = errors_of("standing-wave", 16, "internal", {}, "decay_rate");
   EXPECT_GT(p.order(), 1);
@@ -66,6 +73,12 @@ TEST(SlowStudyOrder, HotSpotInASolidIsOfSecondOrderWithCorrection) {
 
 TEST(SlowStudyOrder, PoiseuilleIsWithinItsReach) {
   EXPECT_LT(error_of("poiseuille", 64, "internal", {"walls=0"}), 0.005);
+}
+
+TEST(SlowStudyOrder, YieldingChannelsAreWithinTheirReach) {
+  for (const char* walls : {"walls=0", "walls=1"})
+    for (const char* quantity : {"profile_rms", "mean_velocity"})
+      EXPECT_LT(error_of("smd-channel", 32, "internal", {walls}, quantity), 0.01) << walls << quantity;
 }
 
 TEST(SlowStudyOrder, CavityConvergesInFirstOrder) {
