@@ -106,6 +106,12 @@ void require_one_pass(const Scene& scene, const Features& f) {
       refuse(scene, key, "does not go together with the methods kept for replication; leave one of the two out");
 }
 
+/// Where there are walls or a surface. A fluid that closes on itself along all axes has no source at its borders.
+bool has_border(const Scene& scene) {
+  return !scene.boundaries.empty() || std::find(scene.periodic.begin(), scene.periodic.begin() + scene.dimensions,
+                                                false) != scene.periodic.begin() + scene.dimensions;
+}
+
 }  // namespace
 
 const char* name_of(IntegratorKind kind) {
@@ -152,6 +158,7 @@ Features features_of(const Scene& scene) {
   f.density_filter = scene.numerics.density_filter.has_value();
   f.gradient_correction = scene.numerics.gradient_correction;
   f.shifting = scene.numerics.shifting.has_value();
+  f.density_coupling = f.shifting && scene.numerics.shifting->coupling > 0 && has_border(scene);
   f.contact = !scene.boundaries.empty();
   f.wall_support = f.contact && scene.numerics.wall_support;
   f.density_diffusion = scene.numerics.density_diffusion > 0;
@@ -190,6 +197,7 @@ FieldSet Features::columns() const {
   if (gradient_correction) s |= field_set(FieldList<Correction>{});
   if (gradient_correction && (heat || laminar || pairwise_stress)) s |= field_set(FieldList<LaplacianCorrection>{});
   if (shifting) s |= field_set(FieldList<ShiftVelocity>{});
+  if (density_coupling) s |= field_set(FieldList<CouplingRate>{});
   if (sleep) s |= field_set(FieldList<RestTime>{});
   if (sleep && heat) s |= field_set(FieldList<HeatRestTime>{});
   if (sleep && heat && stress) s |= field_set(FieldList<RestTemperature>{});
@@ -211,29 +219,29 @@ std::vector<std::string> Features::passes() const {
 
 std::vector<std::string> Features::names() const {
   std::vector<std::string> n;
-  if (heat) n.push_back("heat");
+  if (heat) n.emplace_back("heat");
   if (stress) n.push_back(smd ? "smd-viscosity" : "varying-viscosity");
-  if (laminar) n.push_back("laminar-viscosity");
-  if (artificial_viscosity) n.push_back("artificial-viscosity");
-  if (xsph) n.push_back("xsph");
-  if (particle_sound_speed) n.push_back("particle-sound-speed");
-  if (tensile_correction) n.push_back("tensile-correction");
-  if (monaghan_viscosity) n.push_back("monaghan-viscosity");
-  if (muller_viscosity) n.push_back("muller-viscosity");
-  if (pairwise_stress) n.push_back("pairwise-stress");
-  if (half_pressure) n.push_back("half-pressure");
-  if (internal_energy) n.push_back("internal-energy");
-  if (density_sum) n.push_back("density-summation");
-  if (density_filter) n.push_back("density-filter");
-  if (gradient_correction) n.push_back("gradient-correction");
-  if (shifting) n.push_back("shifting");
-  if (contact) n.push_back("contact");
-  if (wall_support) n.push_back("wall-support");
-  if (bodies) n.push_back("moving-bodies");
-  if (vents) n.push_back("vents");
-  if (outflow) n.push_back("outflow");
-  if (density_diffusion) n.push_back("density-diffusion");
-  if (sleep) n.push_back("sleep");
+  if (laminar) n.emplace_back("laminar-viscosity");
+  if (artificial_viscosity) n.emplace_back("artificial-viscosity");
+  if (xsph) n.emplace_back("xsph");
+  if (particle_sound_speed) n.emplace_back("particle-sound-speed");
+  if (tensile_correction) n.emplace_back("tensile-correction");
+  if (monaghan_viscosity) n.emplace_back("monaghan-viscosity");
+  if (muller_viscosity) n.emplace_back("muller-viscosity");
+  if (pairwise_stress) n.emplace_back("pairwise-stress");
+  if (half_pressure) n.emplace_back("half-pressure");
+  if (internal_energy) n.emplace_back("internal-energy");
+  if (density_sum) n.emplace_back("density-summation");
+  if (density_filter) n.emplace_back("density-filter");
+  if (gradient_correction) n.emplace_back("gradient-correction");
+  if (shifting) n.emplace_back("shifting");
+  if (contact) n.emplace_back("contact");
+  if (wall_support) n.emplace_back("wall-support");
+  if (bodies) n.emplace_back("moving-bodies");
+  if (vents) n.emplace_back("vents");
+  if (outflow) n.emplace_back("outflow");
+  if (density_diffusion) n.emplace_back("density-diffusion");
+  if (sleep) n.emplace_back("sleep");
   n.push_back(name_of(integrator));
   return n;
 }

@@ -28,11 +28,12 @@ struct Features {
   bool density_filter = false;  // every so many steps
   bool gradient_correction = false;
   bool shifting = false;
-  bool contact = false;       // walls
-  bool wall_support = false;  // walls make up for what they cut off a particle's support
-  bool bodies = false;        // walls that move
-  bool vents = false;         // fluid enters
-  bool outflow = false;       // fluid is removed at planes
+  bool density_coupling = false;  // of shifted particles, to that of their places
+  bool contact = false;           // walls
+  bool wall_support = false;      // walls make up for what they cut off a particle's support
+  bool bodies = false;            // walls that move
+  bool vents = false;             // fluid enters
+  bool outflow = false;           // fluid is removed at planes
   bool density_diffusion = false;
   bool sleep = false;  // what is at rest
   IntegratorKind integrator = IntegratorKind::leap_frog;

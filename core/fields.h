@@ -83,6 +83,7 @@ MOLTEN_FIELD(FilteredCompression, StepScalar, filtered_compression, "1", "compre
 MOLTEN_FIELD(Correction, StepTensor, correction, "1", "kernel-gradient correction L");
 MOLTEN_FIELD(LaplacianCorrection, StepScalar, laplacian_correction, "1", "factor that makes Laplacians whole");
 MOLTEN_FIELD(ShiftVelocity, StepVector, shift_velocity, "m/s", "velocity of the particle less that of the fluid");
+MOLTEN_FIELD(CouplingRate, StepScalar, coupling_rate, "1/s", "what the places lack in compression, times a rate");
 MOLTEN_FIELD(XsphVelocity, StepVector, xsph_velocity, "m/s", "XSPH correction of the velocity, before its factor");
 
 MOLTEN_FIELD(StrainRate, StepTensor, strain_rate, "1/s", "rate of strain, grad v + its transpose");
@@ -109,7 +110,7 @@ using AllFields =
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
-              RestTime, HeatRestTime, RestTemperature, Inlet, StrainRate, Vorticity, Thinning>;
+              RestTime, HeatRestTime, RestTemperature, Inlet, StrainRate, Vorticity, Thinning, CouplingRate>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

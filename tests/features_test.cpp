@@ -132,7 +132,18 @@ TEST(Features, CorrectedGradientsAddTheirPassAndShiftingItsColumn) {
   expect_adds([&](Scene& s) { corrected(s), s.fluid.rheology.viscosity = 1; },
               {{"correction", "laplacian_correction"}, {}, {"corrections"}});
   expect_adds([&](Scene& s) { corrected(s), s.numerics.shifting = Shifting{}; },
-              {{"correction", "shift_velocity"}, {}, {"corrections"}});
+              {{"correction", "shift_velocity", "coupling_rate"}, {}, {"corrections"}});
+  expect_adds(
+      [&](Scene& s) {
+        corrected(s), s.numerics.shifting = Shifting{10, 0};
+      },
+      {{"correction", "shift_velocity"}, {}, {"corrections"}});
+  expect_adds(  // nothing leaks from what closes on itself
+      [&](Scene& s) {
+        corrected(s), s.numerics.shifting = Shifting{};
+        s.periodic = {true, true, true}, s.domain = Box{{0, 0, 0}, {1, 1, 1}};
+      },
+      {{"correction", "shift_velocity"}, {}, {"corrections"}});
 }
 
 TEST(Features, DensityFiltersAndSummationAddTheirPasses) {

@@ -155,6 +155,7 @@ const std::vector<Change> changes = {
     {"numerics.gradient_correction=true"},
     {"numerics.shifting=true", {"numerics.gradient_correction=true"}},
     {"numerics.shifting.strength=3", {"numerics.gradient_correction=true", "numerics.shifting={}"}},
+    {"numerics.shifting.coupling=0.5", {"numerics.gradient_correction=true", "numerics.shifting={}"}},
     {"numerics.courant.sound=0.1"},
     {"numerics.courant.viscous=0.05"},
     {"numerics.courant.force=0.1"},

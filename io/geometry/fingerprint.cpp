@@ -79,8 +79,8 @@ void add_one(Hash& hash, const Xsph& x) {
 }
 
 void add_one(Hash& hash, const Shifting& s) {
-  const auto& [strength] = s;
-  add(hash, strength);
+  const auto& [strength, coupling] = s;
+  add(hash, strength, coupling);
 }
 
 void add_one(Hash& hash, const DensityFilter& f) {

@@ -151,9 +151,10 @@ void read_shifting(const TomlReader& keys, Numerics& numerics) {
     numerics.shifting.reset();
     if (*node->value<bool>()) numerics.shifting.emplace();
   } else {
-    const TomlReader table = *keys.table("shifting", {"strength"});
+    const TomlReader table = *keys.table("shifting", {"strength", "coupling"});
     Shifting shifting = numerics.shifting.value_or(Shifting{});
     table.number("strength", shifting.strength, Range{0, 100, false, ""});
+    table.number("coupling", shifting.coupling, Range{0, 10, true, ""});
     numerics.shifting = shifting;
   }
 }
