@@ -1,9 +1,11 @@
 // Corrected gradients and shifting: a pass of their own before the rates, and the rates with what it found.
 #include "core/particle_pass.h"
+#include "core/physics/density_coupling.h"
 #include "core/physics/density_diffusion.h"
 #include "core/physics/gradient_correction.h"
 #include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
+#include "core/physics/pairwise_stress.h"
 #include "core/physics/shifting.h"
 #include "core/physics/viscous_stress.h"
 #include "core/physics/xsph.h"
@@ -30,6 +32,7 @@ template <int Dim, class Real> double largest_speed(const State<Dim, Real>& s) {
 template <int Dim, class Real> auto correction_finish(State<Dim, Real>& s, double fastest) {
   return PlainFinish{[&p = s.parameters, to = s.particles[correction], laplacian = s.particles[laplacian_correction][0],
                       shift = s.particles[shift_velocity], shifting = s.features.shifting,
+                      coupling = s.particles[coupling_rate][0], delta = s.particles[compression][0],
                       fastest](std::size_t slot, const auto& sums) {
     const double volumes = 1 / p.eos.rest_density;
     SymTensor<Dim, double> m;
@@ -38,6 +41,14 @@ template <int Dim, class Real> auto correction_finish(State<Dim, Real>& s, doubl
     for (int k = 0; k < m.size; ++k) to[k][slot] = static_cast<Real>(found.inverse[k]);
     if (laplacian) laplacian[slot] = static_cast<Real>(found.laplacian);
     if (!shifting) return;
+    if (coupling) {
+      double trace = 0;
+      for (int d = 0; d < Dim; ++d) trace += m(d, d);
+      const double lacking =
+          concentration_of<Dim>(volumes * sums[kernel_sum], trace) / p.lattice_concentration - 1 - delta[slot];
+      coupling[slot] =
+          static_cast<Real>(p.density_coupling * fastest / p.smoothing_length * coupling_share(found.inner) * lacking);
+    }
     Vec<Dim, double> way;
     for (int d = 0; d < Dim; ++d) way[d] = volumes * sums[crowding_gradient][d];
     const double wanted = p.shifting * p.smoothing_length * found.inner * fastest;
@@ -53,10 +64,12 @@ template <int Dim, class Real> void find_corrections(State<Dim, Real>& s) {
   const auto finish = correction_finish(s, s.features.shifting ? largest_speed(s) : 0);
   const GradientMoment moments;
   const Crowding crowding{s.features.shifting};
+  const Concentration concentration{s.features.density_coupling};
   with_run_kernel(s, [&](const auto& kernel) {
-    pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel,
-                                  WithWalls(s.wall_support, s.parameters, s.particles, finish, moments, crowding),
-                                  moments, crowding);
+    pair_pass<native_lanes<Real>>(
+        s.neighbours, s.particles, kernel,
+        WithWalls(s.wall_support, s.parameters, s.particles, finish, moments, crowding, concentration), moments,
+        crowding, concentration);
   });
 }
 
@@ -65,13 +78,15 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
   constexpr bool corrected = true;
-  run_rates_pass_at_walls(
-      s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
-      ShiftTransport<Real>(f.shifting, rho0), LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
-      MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
-      StressForce<Dim, Real>(f.stress, rho0), HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
-      DensityDiffusion<Dim, Real>(p.density_diffusion, p.smoothing_length, p.eos, p.gravity),
-      XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
+  run_rates_pass_at_walls(s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
+                          DensityCoupling{f.density_coupling}, ShiftTransport<Real>(f.shifting, rho0),
+                          LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
+                          MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
+                          StressForce<Dim, Real>(f.stress && !f.pairwise_stress, rho0),
+                          PairwiseStress<Dim, Real>(f.pairwise_stress, rho0),
+                          HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
+                          DensityDiffusion<Dim, Real>(p.density_diffusion, p.smoothing_length, p.eos, p.gravity),
+                          XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)                \

@@ -49,6 +49,9 @@ void require_sensible_numerics(const Scene& scene) {
            "is that of state_equation \"tait\" with gamma = 7; use them or leave it out");
   if (n.shifting && !n.gradient_correction)
     refuse(scene, "numerics.shifting", "needs corrected gradients; add gradient_correction = true to [numerics]");
+  if (n.stress_form == StressForm::pairwise && !scene.fluid.rheology.constant() && !n.gradient_correction)
+    refuse(scene, "numerics.stress_form",
+           "\"pairwise\" needs corrected gradients; add gradient_correction = true to [numerics]");
   if (n.internal_energy && n.integrator == IntegratorKind::energy_bounded_euler)
     refuse(scene, "numerics.internal_energy",
            "takes up the work of whole forces, and energy_bounded_euler lets parts of them act; leave it out or choose "
@@ -131,6 +134,12 @@ void require_one_pass(const Scene& scene, const Features& f) {
       refuse(scene, key, "does not go together with the methods kept for replication; leave one of the two out");
 }
 
+/// Where there are walls or a surface. A fluid that closes on itself along all axes has no source at its borders.
+bool has_border(const Scene& scene) {
+  return !scene.boundaries.empty() || std::find(scene.periodic.begin(), scene.periodic.begin() + scene.dimensions,
+                                                false) != scene.periodic.begin() + scene.dimensions;
+}
+
 }  // namespace
 
 const char* name_of(IntegratorKind kind) {
@@ -178,6 +187,7 @@ Features features_of(const Scene& scene) {
   f.density_filter = scene.numerics.density_filter.has_value();
   f.gradient_correction = scene.numerics.gradient_correction;
   f.shifting = scene.numerics.shifting.has_value();
+  f.density_coupling = f.shifting && scene.numerics.shifting->coupling > 0 && has_border(scene);
   f.contact = !scene.boundaries.empty();
   f.wall_support = f.contact && scene.numerics.wall_support;
   f.density_diffusion = scene.numerics.density_diffusion > 0;
@@ -191,6 +201,7 @@ Features features_of(const Scene& scene) {
   f.vents = !scene.vents.empty();
   f.outflow = !scene.outflows.empty();
   f.integrator = scene.numerics.integrator;
+  f.pairwise_stress = f.stress && scene.numerics.stress_form == StressForm::pairwise && !f.any_seldom();
   require_one_pass(scene, f);
   return f;
 }
@@ -210,13 +221,16 @@ FieldSet Features::columns() const {
   if (stages() > 2) s |= field_set(FieldList<PositionSlope, VelocitySlope, CompressionSlope>{});
   if (stages() > 2 && heat) s |= field_set(FieldList<TemperatureSlope>{});
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
-  if (stress) s |= field_set(FieldList<Viscosity, Stress>{});
+  if (stress) s |= field_set(FieldList<Viscosity>{});
+  if (stress && !pairwise_stress) s |= field_set(FieldList<Stress>{});
+  if (pairwise_stress) s |= field_set(FieldList<StrainRate, Vorticity, Thinning>{});
   if (xsph) s |= field_set(FieldList<XsphVelocity>{});
   if (internal_energy) s |= field_set(FieldList<InternalEnergy, InternalEnergyRate>{});
   if (density_filter) s |= field_set(FieldList<FilteredCompression>{});
   if (gradient_correction) s |= field_set(FieldList<Correction>{});
-  if (gradient_correction && (heat || laminar)) s |= field_set(FieldList<LaplacianCorrection>{});
+  if (gradient_correction && (heat || laminar || pairwise_stress)) s |= field_set(FieldList<LaplacianCorrection>{});
   if (shifting) s |= field_set(FieldList<ShiftVelocity>{});
+  if (density_coupling) s |= field_set(FieldList<CouplingRate>{});
   if (sleep) s |= field_set(FieldList<RestTime>{});
   if (sleep && heat) s |= field_set(FieldList<HeatRestTime>{});
   if (sleep && heat && stress) s |= field_set(FieldList<RestTemperature>{});
@@ -247,12 +261,14 @@ std::vector<std::string> Features::names() const {
                                               {tensile_correction, "tensile-correction"},
                                               {monaghan_viscosity, "monaghan-viscosity"},
                                               {muller_viscosity, "muller-viscosity"},
+                                              {pairwise_stress, "pairwise-stress"},
                                               {half_pressure, "half-pressure"},
                                               {internal_energy, "internal-energy"},
                                               {density_sum, "density-summation"},
                                               {density_filter, "density-filter"},
                                               {gradient_correction, "gradient-correction"},
                                               {shifting, "shifting"},
+                                              {density_coupling, "density-coupling"},
                                               {contact, "contact"},
                                               {wall_support, "wall-support"},
                                               {boundary_particles, "dynamic-boundary-particles"},

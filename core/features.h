@@ -11,10 +11,11 @@
 namespace molten {
 
 struct Features {
-  bool heat = false;     // temperature and its conduction
-  bool stress = false;   // viscosity that varies: strain-rate pass and stress
-  bool smd = false;      // that of de Souza Mendes and Dutra
-  bool laminar = false;  // constant viscosity
+  bool heat = false;             // temperature and its conduction
+  bool stress = false;           // viscosity that varies: strain-rate pass and stress
+  bool pairwise_stress = false;  // its form for corrected gradients
+  bool smd = false;              // that of de Souza Mendes and Dutra
+  bool laminar = false;          // constant viscosity
   bool artificial_viscosity = false;
   bool particle_sound_speed = false;
   bool tensile_correction = false;
@@ -27,6 +28,7 @@ struct Features {
   bool density_filter = false;  // every so many steps
   bool gradient_correction = false;
   bool shifting = false;
+  bool density_coupling = false;    // of shifted particles, to that of their places
   bool contact = false;             // walls
   bool wall_support = false;        // walls make up for what they cut off a particle's support
   bool boundary_particles = false;  // walls of particles that take part in density and pressure

@@ -86,10 +86,14 @@ MOLTEN_FIELD(FilteredCompression, StepScalar, filtered_compression, "1", "compre
 MOLTEN_FIELD(Correction, StepTensor, correction, "1", "kernel-gradient correction L");
 MOLTEN_FIELD(LaplacianCorrection, StepScalar, laplacian_correction, "1", "factor that makes Laplacians whole");
 MOLTEN_FIELD(ShiftVelocity, StepVector, shift_velocity, "m/s", "velocity of the particle less that of the fluid");
+MOLTEN_FIELD(CouplingRate, StepScalar, coupling_rate, "1/s", "what the places lack in compression, times a rate");
 MOLTEN_FIELD(XsphVelocity, StepVector, xsph_velocity, "m/s", "XSPH correction of the velocity, before its factor");
 
-// Sums that a pass uses up itself; never a column.
 MOLTEN_FIELD(StrainRate, StepTensor, strain_rate, "1/s", "rate of strain, grad v + its transpose");
+MOLTEN_FIELD(Vorticity, StepVector, vorticity, "1/s", "curl of the velocity; 2-D: the first component");
+MOLTEN_FIELD(Thinning, StepScalar, thinning, "1", "-d ln viscosity / d ln strain rate, halved");
+
+// Sums that a pass uses up itself; never a column.
 MOLTEN_FIELD(Moment, StepTensor, moment, "kg/m3", "sum of m_j grad W times x_ij, for the correction");
 MOLTEN_FIELD(CrowdingGradient, StepVector, crowding_gradient, "kg/m4", "sum of m_j grad W, for shifting");
 MOLTEN_FIELD(KernelSum, StepScalar, kernel_sum, "kg/m3", "sum of m W, with weights");
@@ -109,7 +113,7 @@ using AllFields =
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
-              RestTime, HeatRestTime, RestTemperature, Inlet, Held>;
+              RestTime, HeatRestTime, RestTemperature, Inlet, Held, StrainRate, Vorticity, Thinning, CouplingRate>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

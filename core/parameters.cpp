@@ -1,5 +1,7 @@
 #include "core/parameters.h"
 
+#include "core/physics/density_coupling.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -123,6 +125,21 @@ RestBounds rest_bounds(const Scene& scene, const Parameters<Dim>& p, const Tempe
   return r;
 }
 
+/// The concentration (density_coupling.h) of a square lattice at the rest density.
+template <int Dim> double lattice_concentration(const Parameters<Dim>& p) {
+  return with_kernel<double>(p.kernel, Dim, p.smoothing_length, p.particle_mass, [&](const auto& kernel) {
+    const int reach = static_cast<int>(p.support_radius / p.spacing) + 1, side = 2 * reach + 1;
+    double sum = 0, trace = 0;
+    for (int n = 0; n < (Dim == 2 ? side * side : side * side * side); ++n) {
+      const int a = n % side - reach, b = n / side % side - reach, c = Dim == 2 ? 0 : n / side / side - reach;
+      const double r2 = (a * a + b * b + c * c) * p.spacing * p.spacing;
+      const auto at = kernel(Lanes<double, 1>(std::sqrt(r2 + 1e-30 * p.spacing * p.spacing)));
+      sum += at.w.v, trace -= at.slope.v * r2;
+    }
+    return concentration_of<Dim>(sum / p.eos.rest_density, trace / p.eos.rest_density);
+  });
+}
+
 }  // namespace
 
 double measure_of_particle(const Scene& scene, const Start& start) {
@@ -172,7 +189,8 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.density_kernel = n.density_kernel.value_or(n.kernel);
   p.energy_surplus = n.energy_surplus;
   if (n.density_filter) p.density_filter = *n.density_filter;
-  if (n.shifting) p.shifting = n.shifting->strength;
+  if (n.shifting) p.shifting = n.shifting->strength, p.density_coupling = n.shifting->coupling;
+  if (p.density_coupling > 0) p.lattice_concentration = lattice_concentration(p);
   p.courant_sound = n.courant_sound;
   p.courant_viscous = n.courant_viscous;
   p.courant_force = n.courant_force;

@@ -38,7 +38,8 @@ template <int Dim> struct Parameters {
   double xsph = 0;                                    // ε
   Xsph::Form xsph_form = Xsph::Form::position;
   bool xsph_neighbour_density = false;
-  double shifting = 0;                                  // C
+  double shifting = 0, density_coupling = 0;            // C, κ
+  double lattice_concentration = 1;                     // of density_coupling.h
   KernelKind density_kernel = KernelKind::wendland_c2;  // of the summation
   bool energy_surplus = true;
   DensityFilter density_filter;

@@ -1,10 +1,13 @@
 // The two pair passes of a step: which terms they fuse, and what becomes of the sums.
 #include "core/rates_pass.h"
 
+#include <algorithm>
+
 #include "core/physics/continuity.h"
 #include "core/physics/density_diffusion.h"
 #include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
+#include "core/physics/pairwise_stress.h"
 #include "core/physics/viscous_stress.h"
 #include "core/physics/xsph.h"
 
@@ -27,18 +30,42 @@ template <int Dim, class Real> auto viscosity_finish(State<Dim, Real>& s) {
   }};
 }
 
+/// −½ d ln η/d ln D, at most ½ for a fluid whose stress does not fall with its rate of strain.
+template <int Dim> double thinning_at(const Parameters<Dim>& p, double strain, double temperature, double viscosity) {
+  constexpr double step = 1e-3;
+  const double further = p.viscosity_at((1 + step) * strain, temperature);
+  return std::clamp(0.5 * (1 - further / viscosity) / step, -0.5, 0.5);
+}
+
+/// Velocity gradient → viscosity and how it varies with the rate of strain.
+template <int Dim, class Real> auto pairwise_finish(State<Dim, Real>& s) {
+  return PlainFinish{[&p = s.parameters, strain_of = s.particles[strain_rate], curl = s.particles[vorticity],
+                      eta = s.particles[viscosity][0], thins = s.particles[thinning][0],
+                      T = s.particles[temperature][0]](std::size_t slot, const auto& sums) {
+    const Real volumes = static_cast<Real>(1 / p.eos.rest_density);
+    const SymTensor<Dim, Real> strain = volumes * sums[strain_rate];
+    strain_of.set(slot, strain);
+    curl.set(slot, volumes * sums[vorticity]);
+    const double magnitude = strain_magnitude(strain), there = T ? T[slot] : 0.0;
+    const double value = p.viscosity_at(magnitude, there);
+    eta[slot] = static_cast<Real>(value);
+    thins[slot] = static_cast<Real>(thinning_at(p, magnitude, there, value));
+  }};
+}
+
 }  // namespace
 
 template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("viscosity");
-  const auto finish = viscosity_finish(s);
-  const auto pass = [&](const auto& term) {
+  const auto pass = [&](const auto& finish, const auto& term) {
     with_run_kernel(s, [&](const auto& kernel) {
       pair_pass<native_lanes<Real>>(s.neighbours, s.particles, kernel,
                                     WithWalls(s.wall_support, s.parameters, s.particles, finish, term), term);
     });
   };
-  s.features.gradient_correction ? pass(CorrectedStrainRateTerm{}) : pass(StrainRateTerm{});
+  if (s.features.pairwise_stress) return pass(pairwise_finish(s), CorrectedVelocityGradient{});
+  const auto finish = viscosity_finish(s);
+  s.features.gradient_correction ? pass(finish, CorrectedStrainRateTerm{}) : pass(finish, StrainRateTerm{});
 }
 
 template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {

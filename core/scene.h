@@ -200,6 +200,7 @@ enum class IntegratorKind {
   energy_bounded_euler
 };
 enum class ViscosityForm { morris, monaghan, muller };
+enum class StressForm { summed, pairwise };
 enum class Precision { single, double_ };
 enum class Resort { when_due, each_step };
 
@@ -211,6 +212,7 @@ struct Xsph {
 
 struct Shifting {
   double strength = 10;  // C of δv = −C U h Σ V ∇W
+  double coupling = 1;   // κ of the rate κ U/h at which the density takes on that of the particles' places; 0: not
 };
 
 struct DensityFilter {
@@ -248,6 +250,7 @@ struct Numerics {
   bool particle_sound_speed = false;  // c_i in the artificial viscosity; Tait with γ = 7
   bool tensile_correction = false;
   ViscosityForm viscosity_form = ViscosityForm::morris;  // of a constant viscosity
+  StressForm stress_form = StressForm::summed;           // of a viscosity that varies
   bool internal_energy = false;
   std::optional<Xsph> xsph;
   std::optional<double> stiffness;  // k of the ideal gas, m²/s²; default: the square of the sound speed's default

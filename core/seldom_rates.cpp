@@ -1,6 +1,7 @@
 // The rates pass of scenes that ask for what few do: the tensile correction, Müller's viscosity, the particles' own
 // sound speeds, internal energy, repulsive boundary particles. Everything else that a scene may have is in it as well.
 #include "core/physics/continuity.h"
+#include "core/physics/density_coupling.h"
 #include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
 #include "core/physics/muller_viscosity.h"
@@ -63,7 +64,7 @@ void seldom_pass(State<Dim, Real>& s, const Terms&... terms) {
 
 template <int Dim, class Real> void seldom_rates_pass(State<Dim, Real>& s) {
   if (s.features.gradient_correction)
-    seldom_pass<true>(s, CorrectedContinuity{s.features.shifting},
+    seldom_pass<true>(s, CorrectedContinuity{s.features.shifting}, DensityCoupling{s.features.density_coupling},
                       ShiftTransport<Real>(s.features.shifting, s.parameters.eos.rest_density));
   else
     seldom_pass<false>(s, Continuity{});

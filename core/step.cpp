@@ -138,8 +138,9 @@ template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
     const double fastest = std::max(std::sqrt(s.extremes.speed2), s.bodies.fastest());
     limit(p.courant_sound * h / (p.eos.sound_speed + fastest), Limit::sound);
     limit(p.courant_force * std::sqrt(h / (std::sqrt(s.extremes.acceleration2) + 1e-300)), Limit::force);
-    // The force of a varying viscosity has two parts that both damp the shortest waves: half the step is stable.
-    double viscous = s.features.stress ? p.courant_viscous / 2 : p.courant_viscous;
+    // The summed form of a varying viscosity has two parts that both damp the shortest waves: half the step is stable.
+    const bool twice = s.features.stress && !s.features.pairwise_stress;
+    double viscous = twice ? p.courant_viscous / 2 : p.courant_viscous;
     // (d + 2) cos² times what Morris' form makes of a pair.
     if (s.features.monaghan_viscosity) viscous /= Dim + 2;
     if (s.features.wall_support) viscous /= std::max(1.0, s.wall_support.viscous_stiffness());

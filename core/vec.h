@@ -108,6 +108,24 @@ template <int Dim, class T>
   return r;
 }
 
+/// The curl of a field whose gradient is Σ a ⊗ b: Σ b × a. 2-D: its one component is the first, the second is 0.
+template <int Dim, class T>
+[[gnu::always_inline]] inline Vec<Dim, T> curl_of(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
+  if constexpr (Dim == 2)
+    return {{b[0] * a[1] - b[1] * a[0], T(0)}};
+  else
+    return {{b[1] * a[2] - b[2] * a[1], b[2] * a[0] - b[0] * a[2], b[0] * a[1] - b[1] * a[0]}};
+}
+
+/// w × x for a curl w
+template <int Dim, class T>
+[[gnu::always_inline]] inline Vec<Dim, T> turned_by(const Vec<Dim, T>& w, const Vec<Dim, T>& x) {
+  if constexpr (Dim == 2)
+    return {{-(w[0] * x[1]), w[0] * x[0]}};
+  else
+    return {{w[1] * x[2] - w[2] * x[1], w[2] * x[0] - w[0] * x[2], w[0] * x[1] - w[1] * x[0]}};
+}
+
 /// tr S²
 template <int Dim, class T> T square_trace(const SymTensor<Dim, T>& s) {
   T diagonal = T(0), off = T(0);

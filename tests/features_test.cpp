@@ -104,6 +104,16 @@ TEST(Features, HeatAddsItsColumns) {
 TEST(Features, VaryingViscosityAddsItsPass) {
   expect_adds([](Scene& s) { s.fluid.rheology.model = Rheology::Model::smd; },
               {{"viscosity", "stress"}, {}, {"viscosity"}});
+  expect_adds(
+      [](Scene& s) {
+        s.fluid.rheology.model = Rheology::Model::smd;
+        s.numerics.gradient_correction = true;
+        s.numerics.stress_form = StressForm::pairwise;
+      },
+      {{"viscosity", "correction", "laplacian_correction", "strain_rate", "vorticity", "thinning"},
+       {},
+       {"corrections", "viscosity"}});
+  expect_adds([](Scene& s) { s.numerics.stress_form = StressForm::pairwise; }, {});  // nothing to act on
 }
 
 TEST(Features, ConstantViscosityAddsNoColumn) {
@@ -122,7 +132,18 @@ TEST(Features, CorrectedGradientsAddTheirPassAndShiftingItsColumn) {
   expect_adds([&](Scene& s) { corrected(s), s.fluid.rheology.viscosity = 1; },
               {{"correction", "laplacian_correction"}, {}, {"corrections"}});
   expect_adds([&](Scene& s) { corrected(s), s.numerics.shifting = Shifting{}; },
-              {{"correction", "shift_velocity"}, {}, {"corrections"}});
+              {{"correction", "shift_velocity", "coupling_rate"}, {}, {"corrections"}});
+  expect_adds(
+      [&](Scene& s) {
+        corrected(s), s.numerics.shifting = Shifting{10, 0};
+      },
+      {{"correction", "shift_velocity"}, {}, {"corrections"}});
+  expect_adds(  // nothing leaks from what closes on itself
+      [&](Scene& s) {
+        corrected(s), s.numerics.shifting = Shifting{};
+        s.periodic = {true, true, true}, s.domain = Box{{0, 0, 0}, {1, 1, 1}};
+      },
+      {{"correction", "shift_velocity"}, {}, {"corrections"}});
 }
 
 TEST(Features, DensityFiltersAndSummationAddTheirPasses) {
@@ -236,6 +257,21 @@ TEST(Features, RefusesWhatMakesNoSense) {
   expect_refused(with(IntegratorKind::runge_kutta_4, moves), "numerics.integrator: runge-kutta-4 knows no walls that");
   expect_refused(with(IntegratorKind::energy_bounded_euler, vent), "numerics.integrator: energy-bounded-euler knows");
   expect_refused(with(IntegratorKind::predictor_corrector, outflow), "numerics.integrator: predictor-corrector knows");
+}
+
+TEST(Features, RefusesAPairwiseStressWithoutWhatItNeeds) {
+  const auto pairwise = [](Scene& s) {
+    s.fluid.rheology.model = Rheology::Model::smd;
+    s.numerics.stress_form = StressForm::pairwise;
+  };
+  expect_refused(pairwise, "numerics.stress_form: \"pairwise\" needs corrected gradients; add gradient_cor");
+  const auto corrected = [&](Scene& s) { pairwise(s), s.numerics.gradient_correction = true; };
+  EXPECT_EQ(refusal(corrected), "");
+  Scene replica = minimal();  // with methods kept for replication it is the sum of stresses
+  corrected(replica);
+  EXPECT_TRUE(features_of(replica).pairwise_stress);
+  replica.numerics.tensile_correction = true;
+  EXPECT_FALSE(features_of(replica).pairwise_stress);
 }
 
 TEST(Features, RefusesADensityBySummationWithWhatActsOnItsRate) {

@@ -107,8 +107,11 @@ TEST(SceneFile, CorrectedGradientsAndShifting) {
   };
   EXPECT_FALSE(numerics("").gradient_correction);
   EXPECT_FALSE(numerics("gradient_correction = true").shifting);
+  EXPECT_EQ(numerics("gradient_correction = true").stress_form, StressForm::summed);
+  EXPECT_EQ(numerics("stress_form = \"pairwise\"\ngradient_correction = true").stress_form, StressForm::pairwise);
   EXPECT_EQ(numerics("gradient_correction = true\nshifting = true").shifting->strength, Shifting{}.strength);
   EXPECT_EQ(numerics("gradient_correction = true\nshifting = { strength = 3 }").shifting->strength, 3);
+  EXPECT_EQ(numerics("gradient_correction = true\nshifting = { coupling = 0 }").shifting->coupling, 0);
   const std::string internal = replaced(flat, "[run]", "[numerics]\npreset = \"internal\"\nshifting = false\n[run]");
   EXPECT_TRUE(parse_scene(internal, "s.toml").numerics.gradient_correction);
   EXPECT_FALSE(parse_scene(internal, "s.toml").numerics.shifting);

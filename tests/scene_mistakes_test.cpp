@@ -126,6 +126,8 @@ const std::vector<Mistake> mistakes = {
     {"xsph = { epsilon = 0.4 }", "shifting = true", "numerics.shifting: needs corrected gradients; add gradient_cor"},
     {"xsph = { epsilon = 0.4 }", "gradient_correction = true\nshifting = { strength = 0 }",
      "numerics.shifting.strength: 0 is out of range"},
+    {"xsph = { epsilon = 0.4 }", "gradient_correction = true\nshifting = { coupling = 11 }",
+     "numerics.shifting.coupling: 11 is out of range"},
     {"xsph = { epsilon = 0.4 }", "density_filter = true", "numerics.density_filter: true says too little"},
     {"xsph = { epsilon = 0.4 }", "density_filter = { every = 0 }", "numerics.density_filter.every: 0"},
     {"xsph = { epsilon = 0.4 }", "density_filter = { every = 5 }\ndensity = \"summation\"", "has nothing to do"},

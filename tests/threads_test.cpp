@@ -64,6 +64,7 @@ Scene melting_block(int dim) {
 Scene shifted_flow(int dim) {
   Scene scene = melting_block(dim);
   scene.numerics.gradient_correction = true;
+  scene.numerics.stress_form = StressForm::pairwise;
   scene.numerics.shifting = Shifting{};
   return scene;
 }

@@ -302,6 +302,9 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   template <class L, class V, class Along> static void join(Moment, V& sum, const V& walls, const L&, const Along&) {
     sum += walls;
   }
+  template <class L, class Along> static void join(KernelSum, L& sum, const L& walls, const L&, const Along&) {
+    sum += walls;
+  }
   template <class L, class V, class Along>
   static void join(CrowdingGradient, V& sum, const V& walls, const L&, const Along&) {
     sum += walls;

@@ -79,8 +79,8 @@ void add_one(Hash& hash, const Xsph& x) {
 }
 
 void add_one(Hash& hash, const Shifting& s) {
-  const auto& [strength] = s;
-  add(hash, strength);
+  const auto& [strength, coupling] = s;
+  add(hash, strength, coupling);
 }
 
 void add_one(Hash& hash, const DensityFilter& f) {
@@ -101,14 +101,14 @@ void add_one(Hash& hash, const SleepBounds& s) {
 /// Without the preset's name: its numbers count.
 void add_one(Hash& hash, const Numerics& n) {
   const auto& [preset, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
-               artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, internal_energy, xsph,
-               stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction,
-               shifting, courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion,
-               wall_support, boundary_particles, fixed_dt, sleep] = n;
+               artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, stress_form,
+               internal_energy, xsph, stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter,
+               gradient_correction, shifting, courant_sound, courant_viscous, courant_force, courant_conduction,
+               density_diffusion, wall_support, boundary_particles, fixed_dt, sleep] = n;
   add(hash, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
-      artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, internal_energy, xsph, stiffness,
-      density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction, shifting,
-      courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion, wall_support,
+      artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, stress_form, internal_energy,
+      xsph, stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction,
+      shifting, courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion, wall_support,
       boundary_particles, fixed_dt, sleep);
 }
 

@@ -105,10 +105,9 @@ template <int Dim, class Real> class Runner {
            (scene_.run.max_steps && state_.clock.step >= *scene_.run.max_steps);
   }
 
-  /// The first multiple of an interval (s) after a time.
+  /// The first multiple of an interval (s) after a time; one that is further off only by round-off is that time.
   static double next_multiple(double interval, double time) {
-    const double next = (std::floor(time / interval) + 1) * interval;
-    return next > time ? next : next + interval;
+    return (std::floor(time / interval + 1e-6) + 1) * interval;
   }
 
   /// Sets the times (s) of the next frame and row: the next multiples of their intervals. Steps end on frames' times

@@ -32,6 +32,7 @@ Numerics internal() {
   numerics.smoothing_ratio = 1.7;
   numerics.state_equation = StateEquation::linear;
   numerics.artificial_viscosity = 0;
+  numerics.stress_form = StressForm::pairwise;
   numerics.gradient_correction = true;
   numerics.shifting.emplace();
   numerics.courant_sound = 0.4;

@@ -28,6 +28,7 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "tensile_correction",
                                         "internal_energy",
                                         "viscosity_form",
+                                        "stress_form",
                                         "half_pressure",
                                         "energy_surplus",
                                         "density_kernel",
@@ -160,6 +161,8 @@ void read_seldom(const TomlReader& keys, Numerics& numerics) {
   keys.choice<ViscosityForm>(
       "viscosity_form", numerics.viscosity_form,
       {{"morris", ViscosityForm::morris}, {"monaghan", ViscosityForm::monaghan}, {"muller", ViscosityForm::muller}});
+  keys.choice<StressForm>("stress_form", numerics.stress_form,
+                          {{"summed", StressForm::summed}, {"pairwise", StressForm::pairwise}});
 }
 
 void read_shifting(const TomlReader& keys, Numerics& numerics) {
@@ -169,9 +172,10 @@ void read_shifting(const TomlReader& keys, Numerics& numerics) {
     numerics.shifting.reset();
     if (*node->value<bool>()) numerics.shifting.emplace();
   } else {
-    const TomlReader table = *keys.table("shifting", {"strength"});
+    const TomlReader table = *keys.table("shifting", {"strength", "coupling"});
     Shifting shifting = numerics.shifting.value_or(Shifting{});
     table.number("strength", shifting.strength, Range{0, 100, false, ""});
+    table.number("coupling", shifting.coupling, Range{0, 10, true, ""});
     numerics.shifting = shifting;
   }
 }

@@ -299,6 +299,65 @@ TYPED_TEST(OperatorsOf, StressAndViscosityAreTheRheologys) {
   });
 }
 
+/// A block whose fluid takes the pairwise form of its stress.
+template <int Dim> Block<Dim> pairwise_block(bool smd) {
+  Block<Dim> block = smd_block<Dim>();
+  if (!smd) block.scene.fluid.rheology.model = Rheology::Model::power_law, block.scene.fluid.rheology.flow_index = 1;
+  block.scene.fluid.rheology.consistency = smd ? 1 : 50;
+  block.scene.fluid.rheology.yield_stress = 1;
+  block.scene.numerics.gradient_correction = true;
+  block.scene.numerics.stress_form = StressForm::pairwise;
+  return block;
+}
+
+TYPED_TEST(OperatorsOf, PairwiseStressOfConstantViscosityIsMorrisForm) {
+  MOLTEN_FLAVOUR;
+  const Block<Dim> block = pairwise_block<Dim>(false);
+  auto s = block.template state<Real>();
+  set_velocity(s, [](const auto& x) { return std::array<double, 3>{x[1] * x[1], 0, 0}; });
+  find_all_rates(s);
+  const double expected = 2 * 50.0 / 1000;  // the factor of the lattice is divided out
+  for_each_inner(s, block.size, [&](std::size_t k, const auto&) {
+    EXPECT_NEAR(s.particles[viscosity][0][k], 50, 50 * digits<Real>);
+    EXPECT_NEAR(s.particles[acceleration][0][k], expected, 100 * digits<Real> * expected);
+    for (int d = 1; d < Dim; ++d) EXPECT_NEAR(s.particles[acceleration][d][k], 0, 100 * digits<Real> * expected);
+  });
+}
+
+TYPED_TEST(OperatorsOf, PairwiseStressOfShearThinningFlow) {
+  // u' = D(y) = 0.3 + y²: the force is d/dy (η D) = η_t D', η_t the slope of the flow curve, which is less than η.
+  MOLTEN_FLAVOUR;
+  const Block<Dim> block = pairwise_block<Dim>(true);
+  auto s = block.template state<Real>();
+  const auto shear = [](double y) { return 0.3 + y * y; };
+  set_velocity(s, [](const auto& x) { return std::array<double, 3>{0.3 * x[1] + x[1] * x[1] * x[1] / 3, 0, 0}; });
+  find_all_rates(s);
+  const auto stress_at = [&](double D) { return s.parameters.smd.viscosity(D, 0) * D; };
+  for_each_inner(s, block.size, [&](std::size_t k, const auto& x) {
+    const double step = 1e-4, y = x[1];
+    const double exact = (stress_at(shear(y + step)) - stress_at(shear(y - step))) / (2 * step) / 1000;
+    EXPECT_NEAR(s.particles[acceleration][0][k] / exact, 1, 0.02) << y;
+    for (int d = 1; d < Dim; ++d) EXPECT_NEAR(s.particles[acceleration][d][k], 0, 1e-3 * exact);
+  });
+}
+
+TYPED_TEST(OperatorsOf, PairwiseStressDoesNotFeelRotation) {
+  // Whatever the viscosities of the particles are.
+  MOLTEN_FLAVOUR;
+  const Block<Dim> block = pairwise_block<Dim>(true);
+  auto s = block.template state<Real>();
+  set_velocity(s, [](const auto& x) { return std::array<double, 3>{-x[1], x[0], 0}; });
+  find_corrections(s);
+  find_viscosity(s);
+  for_each_particle(s.particles, [&](std::size_t k, const auto& x) {
+    s.particles[viscosity][0][k] = static_cast<Real>(50 + 40 * std::sin(30 * x[0] + 20 * x[1]));
+  });
+  find_rates(s);
+  for_each_inner(s, block.size, [&](std::size_t k, const auto&) {
+    for (int d = 0; d < Dim; ++d) EXPECT_NEAR(s.particles[acceleration][d][k], 0, 100 * digits<Real>);
+  });
+}
+
 TYPED_TEST(OperatorsOf, XsphPullsTowardsTheMean) {
   // Σ (m/ρ̄)(v_j − v_i) W of a quadratic flow: positive at its minimum; of an even flow nothing.
   MOLTEN_FLAVOUR;
