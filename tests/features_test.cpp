@@ -188,8 +188,8 @@ TEST(Features, SupportAndDensityDiffusionAddNoColumnAndNoPass) {
   EXPECT_EQ(features_of(scene).names(), (Names{"contact", "wall-support", "density-diffusion", "leap-frog"}));
   scene.numerics.gradient_correction = true;
   scene.numerics.shifting = Shifting{};
-  EXPECT_EQ(features_of(scene).names(),
-            (Names{"gradient-correction", "shifting", "contact", "wall-support", "density-diffusion", "leap-frog"}));
+  EXPECT_EQ(features_of(scene).names(), (Names{"gradient-correction", "shifting", "density-coupling", "contact",
+                                               "wall-support", "density-diffusion", "leap-frog"}));
 }
 
 TEST(Features, WallsHeatMeltingAndXsphTogether) {
