@@ -20,7 +20,8 @@ Setup dam_break(const DamBreak& d) {
   Setup s;
   s.scene = scene_head(d.dimensions, g) + fluid_text(d.dimensions, d.spacing, density) +
             fmt::format("[[boundary]]\nbox = {}\ninside = true\nslip = {:.17g}\n", box_text(d.dimensions, {}, d.tank),
-                        d.slip);
+                        d.slip) +
+            "[numerics]\n" + wall_support_text();
   s.start = lattice(d.dimensions, {}, size, d.spacing);
   for (const Triple& x : s.start.position) s.pressure.push_back(density * gravity * (size[up] - x[up]));
   return s;

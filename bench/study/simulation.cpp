@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "bench/study/scene_text.h"
 #include "core/diagnostics.h"
 #include "core/error.h"
 #include "core/step.h"
@@ -119,6 +120,14 @@ void push_step(Numerics& n, double factor) {
   if (n.fixed_dt) *n.fixed_dt *= factor;
 }
 
+/// The methods kept for replication have no support at walls.
+std::string without_support(const std::string& preset, std::string text) {
+  const std::string support = wall_support_text();
+  const std::size_t at = text.find(support);
+  if ((preset == "dias" || preset == "queiroz") && at != std::string::npos) text.erase(at, support.size());
+  return text;
+}
+
 /// A case's text sets the sound speed; an ideal gas takes its square instead.
 std::string text_for(const std::string& preset, std::string text) {
   constexpr std::string_view key = "sound_speed = ";
@@ -134,7 +143,7 @@ std::string text_for(const std::string& preset, std::string text) {
 std::unique_ptr<Simulation> Simulation::make(const Request& request, const Setup& setup, Report& report) {
   std::vector<std::string> overrides{fmt::format("numerics.preset=\"{}\"", request.numerics)};
   overrides.insert(overrides.end(), request.scene_overrides.begin(), request.scene_overrides.end());
-  Scene scene = parse_scene(text_for(request.numerics, setup.scene), "case", overrides);
+  Scene scene = parse_scene(text_for(request.numerics, without_support(request.numerics, setup.scene)), "case", overrides);
   push_step(scene.numerics, request[step_factor]);
   if (scene.dimensions == 2) return make_engine<2>(scene, setup, report);
   return make_engine<3>(scene, setup, report);
