@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace molten {
 
@@ -24,29 +25,36 @@ Extent extent_of(const Start& start) {
   return e;
 }
 
-/// Of a moving wall's centre (m²/s²): at the start, or the highest between key frames.
-double square_of_speed(const Boundary& b) {
-  const auto square = [](const std::array<double, 3>& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
-  if (b.body) return square(b.body->velocity);
-  if (!b.motion) return 0;
-  double fastest2 = square(b.motion->velocity);
+double norm(const std::array<double, 3>& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/// The fastest that a wall's surface moves (m/s), at the start or between key frames; what turns reaches `arm` (m) from
+/// its axis.
+double speed_of(const Boundary& b, double arm) {
+  const auto whirl = [arm](const std::array<double, 3>& spin) { return norm(spin) * (std::numbers::pi / 180) * arm; };
+  double fastest = norm(b.velocity);
+  if (b.body) fastest = std::max(fastest, norm(b.body->velocity) + whirl(b.body->spin));
+  if (!b.motion) return fastest;
+  fastest = std::max(fastest, norm(b.motion->velocity) + whirl(b.motion->spin));
   for (std::size_t k = 1; k < b.motion->key_frames.size(); ++k) {
     const auto &from = b.motion->key_frames[k - 1], &to = b.motion->key_frames[k];
     const double dt = to[0] - from[0];
-    fastest2 = std::max(fastest2, square({(to[1] - from[1]) / dt, (to[2] - from[2]) / dt, (to[3] - from[3]) / dt}));
+    fastest = std::max(fastest, norm({(to[1] - from[1]) / dt, (to[2] - from[2]) / dt, (to[3] - from[3]) / dt}) +
+                                    whirl({(to[4] - from[4]) / dt, (to[5] - from[5]) / dt, (to[6] - from[6]) / dt}));
   }
-  return fastest2;
+  return fastest;
 }
 
 /// Ten times the speed that the fluid reaches by falling its own height, or that fluid, walls or vents start with.
 double default_sound_speed(const Scene& scene, const Start& start, const Extent& extent) {
-  double fall = 0, fastest2 = 0;  // g · height, m²/s²
+  double fall = 0;  // g · height, m²/s²
   for (int d = 0; d < scene.dimensions; ++d)
     fall += std::abs(scene.gravity[d]) * (extent.upper[d] - extent.lower[d] + start.spacing);
-  for (const auto& v : start.velocity) fastest2 = std::max(fastest2, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  fastest2 = std::max(fastest2, start.vent_speed * start.vent_speed);
-  for (const Boundary& b : scene.boundaries) fastest2 = std::max(fastest2, square_of_speed(b));
-  return 10 * std::sqrt(2 * fall + fastest2 + 1e-12);
+  double fastest = start.vent_speed, diagonal2 = 0;
+  for (const auto& v : start.velocity) fastest = std::max(fastest, norm(v));
+  for (int d = 0; d < scene.dimensions; ++d) diagonal2 += std::pow(extent.upper[d] - extent.lower[d], 2);
+  const double arm = std::sqrt(diagonal2) / 2;  // turning walls are as large as the fluid around them
+  for (const Boundary& b : scene.boundaries) fastest = std::max(fastest, speed_of(b, arm));
+  return 10 * std::sqrt(2 * fall + fastest * fastest + 1e-12);
 }
 
 /// −g·x of a surface half a spacing above the highest particle.

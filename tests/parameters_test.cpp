@@ -1,7 +1,10 @@
-// The numbers of a run that follow from several of the scene's: the bounds of rest.
+// The numbers of a run that follow from several of the scene's: the bounds of rest, the default sound speed.
 #include "core/parameters.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "tests/particle_sets.h"
@@ -75,6 +78,28 @@ TEST(RestBounds, OfHeatAreMoreThanRoundOff) {
     EXPECT_LT(bounds_of(scene).temperature, 0.01);
   }
   EXPECT_EQ(bounds_of(scene, {20, 20, 20, 60}).temperature, 1e-6 * 60);
+}
+
+double sound_speed_beside(const Boundary& wall) {
+  Scene scene = plain_scene(2);
+  scene.numerics.sound_speed.reset();
+  scene.gravity = {};
+  scene.boundaries.push_back(wall);
+  return parameters_of<2>(scene, start_of(scene, cube<2>(11, spacing), spacing)).eos.sound_speed;
+}
+
+TEST(SoundSpeed, IsTenTimesTheFastestWalls) {
+  const double arm = 10 * spacing * std::sqrt(2) / 2;  // half the fluid's diagonal
+  Boundary belt, wheel, body, frames;
+  belt.velocity = {3, 4, 0};
+  EXPECT_NEAR(sound_speed_beside(belt), 50, 1e-5);
+  wheel.motion.emplace().spin = {0, 0, 180};
+  EXPECT_NEAR(sound_speed_beside(wheel), 10 * std::numbers::pi * arm, 1e-5);
+  body.body.emplace().velocity = {2, 0, 0};
+  body.body->spin = {0, 0, -360};
+  EXPECT_NEAR(sound_speed_beside(body), 10 * (2 + 2 * std::numbers::pi * arm), 1e-5);
+  frames.motion.emplace().key_frames = {{0, 0, 0, 0, 0, 0, 0}, {2, 6, 0, 0, 0, 0, 360}};
+  EXPECT_NEAR(sound_speed_beside(frames), 10 * (3 + std::numbers::pi * arm), 1e-5);
 }
 
 }  // namespace

@@ -96,6 +96,7 @@ TEST(SceneFile, TheDefaultPresetCorrectsSmoothFlows) {
       corrects({"fluid.rheology={ model = \"smd\", yield_stress = 1, consistency = 1, n = 1, jump_number = 9 }"}));
   EXPECT_FALSE(corrects({"fluid.rheology.viscosity=1", "numerics.preset=\"basic\""}));
   EXPECT_FALSE(corrects({"fluid.rheology.viscosity=1", "numerics.sleep={}"}));
+  EXPECT_FALSE(corrects({"fluid.rheology.viscosity=1", "numerics.boundary_particles.kind=\"dynamic\""}));
   const Numerics still =
       parse_scene(flat, "s.toml", {"scene.gravity=[0, 0]", "fluid.heat={ diffusivity = 1, initial = 20 }"}).numerics;
   EXPECT_TRUE(still.gradient_correction && !still.shifting) << "only heat flows";

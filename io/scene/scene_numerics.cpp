@@ -39,8 +39,8 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "sleep"};
 
 Numerics read_preset(const TomlReader& keys, const Scene& scene) {
-  // What sleeps knows no corrections.
-  std::string name = keys.has("sleep") ? "basic" : "molten";
+  // What sleeps, and what stands on a wall of particles, knows no corrections or no shifting.
+  std::string name = keys.has("sleep") || keys.has("boundary_particles") ? "basic" : "molten";
   keys.choice<std::string>("preset", name,
                            {{"molten", "molten"},
                             {"basic", "basic"},
