@@ -119,8 +119,8 @@ template <int Dim, class Real> void require_sane(const State<Dim, Real>& s) {
   if (speed > 30 * sound)
     throw Error(ExitCode::diverged, "the run blew up: particle " + std::to_string(fastest_particle(s)) +
                                         " has a velocity of " + std::to_string(speed / sound) +
-                                        " times the sound speed; raise numerics.sound_speed, lower numerics.courant or "
-                                        "add numerics.xsph");
+                                        " times the sound speed; raise numerics.sound_speed, lower numerics." +
+                                        (s.parameters.fixed_dt ? "fixed_dt" : "courant") + " or add numerics.xsph");
 }
 
 template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
