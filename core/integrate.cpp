@@ -33,12 +33,12 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
   using Wide = ClusterLanes;
 
  public:
-  explicit Integrator(State<Dim, Real>& s, double previous_dt)
+  explicit Integrator(State<Dim, Real>& s)
       : s_(s),
         p_(s.particles),
         dt_(s.clock.dt),
         kick_(kick_time(s)),
-        stretch_(previous_dt > 0 ? dt_ / previous_dt : 0),
+        stretch_(s.clock.previous_dt > 0 ? dt_ / s.clock.previous_dt : 0),
         drift_(s),
         mover_(s) {}
 
@@ -232,7 +232,7 @@ template <int Dim, class Real> class Preparation {
 
 /// Moves all active clusters and prepares them for the next step's passes.
 template <bool leap_frog, int Dim, class Real> Moved<Dim> move_all(State<Dim, Real>& s) {
-  const Integrator<leap_frog, Dim, Real> integrator(s, s.clock.previous_dt);
+  const Integrator<leap_frog, Dim, Real> integrator(s);
   const Preparation<Dim, Real> preparation(s);
   const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
   return reduce_slots(

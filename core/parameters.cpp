@@ -1,10 +1,10 @@
 #include "core/parameters.h"
 
-#include "core/physics/density_coupling.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "core/physics/density_coupling.h"
 
 namespace molten {
 

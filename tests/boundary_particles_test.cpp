@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "core/boundary/repulsion.h"
-#include "core/boundary/shapes.h"
 #include "core/diagnostics.h"
 #include "core/step.h"
 #include "io/geometry/assemble.h"
+#include "tests/contact_shapes.h"
 #include "tests/flavours.h"
 #include "tests/memory_archive.h"
 #include "tests/scene_texts.h"
@@ -21,6 +21,8 @@ namespace molten {
 namespace {
 
 using namespace scene_texts;
+using contact_test::ball;
+using contact_test::chain;
 
 template <class F> class BoundaryParticlesOf : public testing::Test {};
 TYPED_TEST_SUITE(BoundaryParticlesOf, Flavours, FlavourNames);
@@ -28,23 +30,15 @@ TYPED_TEST_SUITE(BoundaryParticlesOf, Flavours, FlavourNames);
 // ---- where they are -------------------------------------------------------------------------------------------------
 
 /// A tank without a lid, of whole pitches of 1 m.
-Wall<2> open_tank(int width, int height) {
-  Wall<2> wall;
-  wall.vertices = {{0, height}, {0, 0}, {width, 0}, {width, height}};
-  wall.facets = {{0, 1}, {1, 2}, {2, 3}};
-  return wall;
+Wall<2> open_tank(double width, double height) {
+  return chain({{0, height}, {0, 0}, {width, 0}, {width, height}}, false);
 }
 
 /// The unit cube of so many pitches a side; the fluid is inside.
 Wall<3> cube_wall(double pitches) {
   Shape shape;
   shape.box = Box{{0, 0, 0}, {pitches, pitches, pitches}};
-  TriangleMesh mesh = tessellate(shape, 1e9);
-  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-  Wall<3> wall;
-  wall.vertices = mesh.vertices;
-  wall.facets = mesh.triangles;
-  return wall;
+  return contact_test::shell(shape, 1e9, true);
 }
 
 template <int Dim> double least_distance(const std::vector<HeldPoint<Dim>>& points) {
@@ -75,9 +69,7 @@ TEST(BoundaryParticles, AreTwoStaggeredRowsAroundACorner) {
 }
 
 TEST(BoundaryParticles, OfWallsThatMeetKeepTheirDistance) {
-  Wall<2> step;
-  step.vertices = {{1, -2}, {1, 1.3}, {2, 1.3}, {2, -2}};
-  step.facets = {{0, 1}, {1, 2}, {2, 3}};
+  const Wall<2> step = chain({{1, -2}, {1, 1.3}, {2, 1.3}, {2, -2}}, false);
   EXPECT_GE(least_distance(held_points<2>({open_tank(3, 2), step}, 1)), 0.45);
 }
 
@@ -91,18 +83,13 @@ TEST(BoundaryParticles, StandBehindTheFacesOfACube) {
 }
 
 TEST(BoundaryParticles, LeaveNoHolesInRoundWalls) {
-  Shape shape;
-  shape.sphere = Sphere{{0, 0, 0}, 6};
-  const TriangleMesh mesh = tessellate(shape, 2);
-  Wall<3> wall;
-  wall.vertices = mesh.vertices;
-  wall.facets = mesh.triangles;
+  const Wall<3> wall = ball(6, 2);
   const auto points = held_points<3>({wall}, 1);
   EXPECT_GE(least_distance(points), 0.45);
   double widest = 0;  // from a place on the wall to the next point
-  for (const auto& t : mesh.triangles)
+  for (const auto& t : wall.facets)
     for (const auto& [u, v] : {std::pair{0.33, 0.33}, {0.5, 0.5}, {0.5, 0.0}, {0.0, 0.5}, {0.1, 0.1}}) {
-      const Vec3 x = (1 - u - v) * mesh.vertices[t[0]] + u * mesh.vertices[t[1]] + v * mesh.vertices[t[2]];
+      const Vec3 x = (1 - u - v) * wall.vertices[t[0]] + u * wall.vertices[t[1]] + v * wall.vertices[t[2]];
       double next = 1e300;
       for (const auto& p : points) next = std::min(next, (p.at - x).norm());
       widest = std::max(widest, next);
@@ -336,20 +323,12 @@ TEST(RepulsiveParticles, PushLessTowardsTheSurface) {
 
 TEST(RepulsiveParticles, HaveANormalEachSideOfACornerAndOneWhereItIsBlunt) {
   EXPECT_EQ(repulsive_points<2>({open_tank(3, 2)}, 1).size(), 3u + 4 + 3);
-  Wall<2> bend;
-  bend.vertices = {{0, 0}, {3, 0}, {6, 1}};
-  bend.facets = {{0, 1}, {1, 2}};
+  const Wall<2> bend = chain({{0, 0}, {3, 0}, {6, 1}}, false);
   EXPECT_EQ(repulsive_points<2>({bend}, 1).size(), 7u);
 }
 
 TEST(RepulsiveParticles, RefuseNarrowWallsAndStillWaterWithoutDepth) {
-  Shape ball;
-  ball.sphere = Sphere{{0, 0, 0}, 1};
-  const TriangleMesh mesh = tessellate(ball, 0.3);
-  Wall<3> wall;
-  wall.vertices = mesh.vertices;
-  wall.facets = mesh.triangles;
-  EXPECT_THROW(repulsive_points<3>({wall}, 1), Error);
+  EXPECT_THROW(repulsive_points<3>({ball(1, 0.3)}, 1), Error);
   EXPECT_THROW(Repulsion<2>({}, still_parameters<2>(), {0, 1}), Error);
 }
 

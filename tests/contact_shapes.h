@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/boundary/contact.h"
+#include "core/boundary/shapes.h"
 
 namespace molten::contact_test {
 
@@ -64,6 +65,23 @@ inline Wall<3> box(double half, bool inwards, Response response = {}) {
     for (auto& f : wall.facets) std::swap(f[1], f[2]);
   wall.response = response;
   return wall;
+}
+
+/// The surface of a closed shape by edges no longer than this; normals inwards or outwards.
+inline Wall<3> shell(const Shape& shape, double edge, bool inwards) {
+  TriangleMesh mesh = tessellate(shape, edge);
+  Wall<3> wall;
+  wall.vertices = std::move(mesh.vertices);
+  wall.facets = std::move(mesh.triangles);
+  if (inwards)
+    for (auto& f : wall.facets) std::swap(f[1], f[2]);
+  return wall;
+}
+
+inline Wall<3> ball(double radius, double edge) {
+  Shape shape;
+  shape.sphere = Sphere{{0, 0, 0}, radius};
+  return shell(shape, edge, false);
 }
 
 inline Wall<2> square(double half, bool inwards, Response response = {}) {

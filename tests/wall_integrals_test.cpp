@@ -6,8 +6,8 @@
 
 #include <functional>
 
-#include "core/boundary/shapes.h"
 #include "core/kernel.h"
+#include "tests/contact_shapes.h"
 #include "tests/particle_sets.h"
 
 namespace molten {
@@ -78,18 +78,10 @@ template <int Dim> Wall<Dim> plane(const Point<Dim>& point, const Point<Dim>& no
   return wall;
 }
 
-Wall<3> container(const Shape& shape, double edge) {
-  TriangleMesh mesh = tessellate(shape, edge);
-  Wall<3> wall;
-  wall.vertices = mesh.vertices;
-  for (const auto& t : mesh.triangles) wall.facets.push_back({t[0], t[2], t[1]});
-  return wall;
-}
-
 Wall<3> box_container() {
   Shape shape;
   shape.box = Box{{0, 0, 0}, {10, 10, 10}};
-  return container(shape, 100);
+  return contact_test::shell(shape, 100, true);
 }
 
 const auto outside_square = [](Point<2> y) { return y.minCoeff() < 0 || y.maxCoeff() > 10; };
@@ -127,7 +119,7 @@ TEST(WallIntegrals, InsideABox) {
 TEST(WallIntegrals, InsideARoundedMeshOfManyTriangles) {
   Shape shape;
   shape.sphere = Sphere{{0, 0, 0}, 6};
-  const std::vector<Wall<3>> walls{container(shape, 0.8)};
+  const std::vector<Wall<3>> walls{contact_test::shell(shape, 0.8, true)};
   ASSERT_GT(walls[0].facets.size(), 500U);
   const auto outside = [](Point<3> y) { return y.norm() > 5.97; };  // the facets lie a little inside the sphere
   for (const Point<3>& x : {Point<3>(0, 0, -5.3), Point<3>(3, 3.2, 2.6)}) {
@@ -141,7 +133,7 @@ TEST(WallIntegrals, InsideARoundedMeshOfManyTriangles) {
 TEST(WallIntegrals, ManySmallFacetsCountAsTheWallThatTheyMake) {
   Shape shape;
   shape.sphere = Sphere{{0, 0, 0}, 20};
-  const std::vector<Wall<3>> many{container(shape, 0.5)}, few{container(shape, 1.5)};
+  const std::vector<Wall<3>> many{contact_test::shell(shape, 0.5, true)}, few{contact_test::shell(shape, 1.5, true)};
   const auto fine = integrals_of(many), coarse = integrals_of(few);
   ASSERT_GT(many[0].facets.size(), 8 * few[0].facets.size());
   for (const double depth : {0.3, 0.5, 0.9, 1.5, 2.2})
@@ -177,13 +169,7 @@ TEST(WallIntegrals, ManySmallSegmentsCountAsTheWallThatTheyMake) {
 }
 
 TEST(WallIntegrals, AClosedSurfaceHidesAllOfItsInside) {
-  Shape shape;
-  shape.sphere = Sphere{{0, 0, 0}, 1};
-  const TriangleMesh mesh = tessellate(shape, 0.3);
-  Wall<3> wall;
-  wall.vertices = mesh.vertices;
-  wall.facets = mesh.triangles;
-  const auto ours = sum(integrals_of<3>({wall}), Point<3>(0, 0, 1.5));
+  const auto ours = sum(integrals_of<3>({contact_test::ball(1, 0.3)}), Point<3>(0, 0, 1.5));
   const auto twin = brute<3>(
       {0, 0, 1.5}, [](Point<3> y) { return y.norm() < 0.985; }, 130);
   EXPECT_NEAR(ours.hidden, twin.hidden, 0.003);
