@@ -17,6 +17,7 @@
 // lanes without a pair add exactly zero.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -170,19 +171,19 @@ template <int N, int Dim, class Real, class KernelType, class Finish, class... T
     const auto at = [&](std::size_t k) __attribute__((always_inline)) {
       return place(i[local_position], kernel, list, k);
     };
-    std::size_t k = 0;
     if constexpr (looks_ahead) {
+      // One copy of the terms for all pairs: a copy for the last one may round otherwise, and which pair is the last of
+      // those that matter depends on when the list was made.
       if (count > 0) {
         Place next = at(0);
-        for (k = 1; k < count; ++k) {
+        for (std::size_t k = 0; k < count; ++k) {
           const Place now = next;
-          next = at(k);
+          next = at(std::min(k + 1, count - 1));
           add_pairs(i, now, kernel, terms, sums);
         }
-        add_pairs(i, next, kernel, terms, sums);
       }
     } else {
-      for (; k < count; ++k) add_pairs(i, at(k), kernel, terms, sums);
+      for (std::size_t k = 0; k < count; ++k) add_pairs(i, at(k), kernel, terms, sums);
     }
     hand_over(slot, sums, finish, Sums{});
   }

@@ -1,4 +1,5 @@
 // The same bits for any number of threads: the rates, and runs of whole steps with walls, heat and changing viscosity.
+// And whatever the age of the list, so that a run that goes on with a new one after a restart keeps its bits.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -129,6 +130,34 @@ TYPED_TEST(ThreadsOf, ShiftedFlowBetweenWallsWithSupportOf30Steps) {
   scene.numerics.wall_support = true;
   scene.numerics.density_diffusion = 0.1;
   expect_same_bits<TypeParam::dim, typename TypeParam::Real>(scene, 30);
+}
+
+/// The rates with the list's narrowest shell and with wider ones, which add pairs out of reach.
+template <int Dim, class Real> void expect_same_bits_from_wider_shells(const Scene& scene) {
+  auto s = start_run<Dim, Real>(scene);
+  for (int k = 0; k < 3; ++k) step(s);
+  sort_and_list(s);
+  find_all_rates(s);
+  const auto narrowest = bits_of(s);
+  for (int k = 0; k < 2; ++k) {
+    s.neighbours.moved(0.22 * s.parameters.skin);
+    ASSERT_FALSE(s.neighbours.is_due());
+    find_all_rates(s);
+    EXPECT_EQ(narrowest == bits_of(s), true) << k;
+  }
+}
+
+TYPED_TEST(ThreadsOf, RatesFromWiderShells) {
+  constexpr int Dim = TypeParam::dim;
+  using Real = typename TypeParam::Real;
+  Scene smooth = dam_break(Dim);
+  smooth.numerics.gradient_correction = true;
+  for (const bool support : {false, true})
+    for (Scene scene : {dam_break(Dim), melting_block(Dim), shifted_flow(Dim), smooth}) {
+      scene.numerics.wall_support = support;
+      if (support) scene.numerics.density_diffusion = 0.1;
+      expect_same_bits_from_wider_shells<Dim, Real>(scene);
+    }
 }
 
 TYPED_TEST(ThreadsOf, TheBitsDoChangeWithTheState) {
