@@ -41,7 +41,7 @@ template <int Dim, class Real> auto correction_finish(State<Dim, Real>& s, doubl
     for (int k = 0; k < m.size; ++k) to[k][slot] = static_cast<Real>(found.inverse[k]);
     if (laplacian) laplacian[slot] = static_cast<Real>(found.laplacian);
     if (!shifting) return;
-    if (coupling) {
+    if constexpr (requires { sums[kernel_sum]; }) {
       double trace = 0;
       for (int d = 0; d < Dim; ++d) trace += m(d, d);
       const double lacking =
@@ -64,13 +64,15 @@ template <int Dim, class Real> void find_corrections(State<Dim, Real>& s) {
   const auto finish = correction_finish(s, s.features.shifting ? largest_speed(s) : 0);
   const GradientMoment moments;
   const Crowding crowding{s.features.shifting};
-  const Concentration concentration{s.features.density_coupling};
-  with_run_kernel(s, [&](const auto& kernel) {
-    pair_pass<native_lanes<Real>>(
-        s.neighbours, s.particles, kernel,
-        WithWalls(s.wall_support, s.parameters, s.particles, finish, moments, crowding, concentration), moments,
-        crowding, concentration);
-  });
+  const auto pass = [&](const auto&... more) {
+    with_run_kernel(s, [&](const auto& kernel) {
+      pair_pass<native_lanes<Real>>(
+          s.neighbours, s.particles, kernel,
+          WithWalls(s.wall_support, s.parameters, s.particles, finish, moments, crowding, more...), moments, crowding,
+          more...);
+    });
+  };
+  s.features.density_coupling ? pass(Concentration{}) : pass();
 }
 
 template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
@@ -78,15 +80,24 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
   constexpr bool corrected = true;
-  run_rates_pass_at_walls(s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
-                          DensityCoupling{f.density_coupling}, ShiftTransport<Real>(f.shifting, rho0),
-                          LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
-                          MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
-                          StressForce<Dim, Real>(f.stress && !f.pairwise_stress, rho0),
-                          PairwiseStress<Dim, Real>(f.pairwise_stress, rho0),
-                          HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
-                          DensityDiffusion<Dim, Real>(p.density_diffusion, p.smoothing_length, p.eos, p.gravity),
-                          XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
+  const auto pass = [&](const auto&... more) {
+    run_rates_pass_at_walls(s, PressureForce{}, artificial_viscosity_of(s), CorrectedContinuity{f.shifting},
+                            ShiftTransport<Real>(f.shifting, rho0),
+                            LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0), more...);
+  };
+  const DensityCoupling coupling{f.density_coupling};
+  const DensityDiffusion<Dim, Real> diffusion(p.density_diffusion, p.smoothing_length, p.eos, p.gravity);
+  // Newtonian flows in a space of their own, between walls and with a surface; and all that a scene may have.
+  if (f.stress || f.heat || f.xsph || f.monaghan_viscosity)
+    pass(MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
+         StressForce<Dim, Real>(f.stress && !f.pairwise_stress, rho0),
+         PairwiseStress<Dim, Real>(f.pairwise_stress, rho0),
+         HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0), diffusion, coupling,
+         XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
+  else if (coupling.on || diffusion.on)
+    pass(diffusion, coupling);
+  else
+    pass();
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)                \

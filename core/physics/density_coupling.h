@@ -23,14 +23,14 @@ namespace molten {
 struct Concentration {
   using Reads = FieldList<>;
   using Sums = FieldList<KernelSum>;
-  bool on = false;
+  static constexpr bool on = true;
 
   template <class Pair, class I, class J, class Out>
   [[gnu::always_inline]] void operator()(const Pair& ij, const I&, const J&, Out& out) const {
     out.W(kernel_sum, decltype(ij.r2)(1));
   }
   template <class Piece, class L, class Out> void behind_wall(const Piece& s, const L& density, Out& out) const {
-    if (on) out.plain(kernel_sum, density * s.hidden);
+    out.plain(kernel_sum, density * s.hidden);
   }
 };
 
