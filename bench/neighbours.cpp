@@ -89,7 +89,7 @@ template <int Dim, class Real> void add_parts(const std::string& size, long long
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<std::int32_t>(k);
     s.particles.permute(order, s.particles.count());
   });
-  part("mark_near_wall", false, [](S& s) { mark_near_wall(s); });
+  part("look_for_walls", false, [](S& s) { look_for_walls(s); });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // How particles move: at what rate, and bouncing off walls where walls are near.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -58,11 +59,11 @@ template <int Dim, class Real> class Drift {
 template <int Dim, class Real> class Mover {
  public:
   explicit Mover(const State<Dim, Real>& s)
-      : s_(s), always_collide_(s.features.contact && longest_way() > s.parameters.spacing) {}
+      : s_(s), way_(longest_way() / s.parameters.spacing), part_(FreeWay::part_of(std::min(way_, FreeWay::longest))) {}
 
   /// Moves one particle by a step along its rate; says whether it bounced.
   bool move(std::size_t slot, Motion<Dim>& m) const {
-    if (may_collide(slot / cluster_size) && may_bounce(slot)) return s_.contact.move(m, s_.clock.dt) > 0;
+    if (s_.features.contact && may_bounce(slot)) return s_.contact.move(m, s_.clock.dt) > 0;
     m.position += s_.clock.dt * m.rate;
     return false;
   }
@@ -70,34 +71,37 @@ template <int Dim, class Real> class Mover {
   /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent or a wall moves, does
   /// not count. `kicks`: what bodies give to particles is added.
   ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
-    if (may_collide(cluster)) {
-      ClusterMotion<Dim> moved = m;  // a copy for the other function: elsewhere the motion stays in registers
-      const ClusterLanes bounced = collide_cluster(cluster, moved, kicks);
-      m = moved;
-      return bounced;
-    }
+    const Vec<Dim, ClusterLanes> before = m.position;
     m.position += ClusterLanes(s_.clock.dt) * m.rate;
-    return ClusterLanes(0.0);
-  }
-
- private:
-  bool may_collide(std::size_t cluster) const { return always_collide_ || s_.near_wall[cluster]; }
-  bool may_bounce(std::size_t slot) const {
-    return !s_.particles.is_padding(slot) && !(inlet_ && inlet_[slot] >= 0) && !(held_ && held_[slot] > 0);
-  }
-
-  [[gnu::noinline]] ClusterLanes collide_cluster(std::size_t cluster, ClusterMotion<Dim>& m,
-                                                 std::span<Kick<Dim>> kicks) const {
-    ClusterLanes bounced(0.0);
-    for (int n = 0; n < cluster_size; ++n)
-      if (may_bounce(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(m, n, kicks)));
+    if (!may_collide(cluster)) return ClusterLanes(0.0);
+    ClusterMotion<Dim> moved = m;  // a copy for the other function: elsewhere the motion stays in registers
+    const ClusterLanes bounced = collide_cluster(cluster, before, moved, kicks);
+    m = moved;
     return bounced;
   }
 
-  bool collide(ClusterMotion<Dim>& of, int n, std::span<Kick<Dim>> kicks) const {
+ private:
+  bool may_collide(std::size_t cluster) const {
+    return s_.features.contact && (way_ > FreeWay::longest || s_.free_way.any_within(part_, cluster));
+  }
+  bool may_bounce(std::size_t slot) const {
+    return (way_ > FreeWay::longest || s_.free_way.within(part_, slot)) && !s_.particles.is_padding(slot) &&
+           !(inlet_ && inlet_[slot] >= 0) && !(held_ && held_[slot] > 0);
+  }
+
+  /// `m`: where they get without walls, and then with them.
+  [[gnu::noinline]] ClusterLanes collide_cluster(std::size_t cluster, const Vec<Dim, ClusterLanes>& before,
+                                                 ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
+    ClusterLanes bounced(0.0);
+    for (int n = 0; n < cluster_size; ++n)
+      if (may_bounce(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(before, m, n, kicks)));
+    return bounced;
+  }
+
+  bool collide(const Vec<Dim, ClusterLanes>& before, ClusterMotion<Dim>& of, int n, std::span<Kick<Dim>> kicks) const {
     Motion<Dim> m;
     for (int d = 0; d < Dim; ++d) {
-      m.position[d] = lane(of.position[d], n);
+      m.position[d] = lane(before[d], n);
       m.velocity[d] = lane(of.velocity[d], n);
       m.rate[d] = lane(of.rate[d], n);
     }
@@ -118,7 +122,8 @@ template <int Dim, class Real> class Mover {
   }
 
   const State<Dim, Real>& s_;
-  bool always_collide_;
+  double way_;         // spacings; no particle gets further from where it was sorted by the end of this step
+  std::uint8_t part_;  // the same for the free ways
   const std::int64_t* inlet_ = s_.particles[inlet][0];  // null without vents
   const Real* held_ = s_.particles[held][0];            // null without boundary particles
 };

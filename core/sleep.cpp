@@ -163,7 +163,7 @@ template <int Dim, class Real> void sort_in_blocks(State<Dim, Real>& s, const st
   const auto scope = s.timer.scope("sort and list");
   s.neighbours.rebuild(s.particles, block_of);
   take_stock(s, s.neighbours.first_slot(Block::active));
-  mark_near_wall(s);
+  look_for_walls(s);
   prepare(s);
   mark_sleepers(s);
 }
@@ -278,7 +278,7 @@ template <int Dim, class Real> void sort_active(State<Dim, Real>& s) {
   if (in_blocks && s.neighbours.covers_active(s.particles)) {
     const auto scope = s.timer.scope("sort and list");
     s.neighbours.rebuild_active(s.particles);
-    mark_near_wall(s);
+    look_for_walls(s);
     prepare(s, s.neighbours.first_slot(Block::active));
     return;
   }

@@ -11,6 +11,7 @@
 #include "core/boundary/repulsion.h"
 #include "core/boundary/wall_support.h"
 #include "core/features.h"
+#include "core/free_way.h"
 #include "core/neighbours.h"
 #include "core/parameters.h"
 #include "core/particles.h"
@@ -61,10 +62,10 @@ template <int Dim, class Real> struct State {
   Bodies<Dim> bodies;
   Vents<Dim> vents;
   Particles<Dim, Real> particles;
-  Neighbours<Dim, Real> neighbours;     // good between sorts
-  std::vector<std::uint8_t> near_wall;  // by cluster: a wall may be met before the next sort
-  WallSupport<Dim> wall_support;        // empty without the feature
-  Clock clock;                          // this step
+  Neighbours<Dim, Real> neighbours;  // good between sorts
+  FreeWay free_way;                  // to the walls, as of the last sort; empty without contact
+  WallSupport<Dim> wall_support;     // empty without the feature
+  Clock clock;                       // this step
   Extremes extremes;
   Timer timer;
   Sleep sleep{};
@@ -73,8 +74,8 @@ template <int Dim, class Real> struct State {
 
   void archive(Archive& a);
   std::size_t bytes() const {
-    return particles.bytes() + neighbours.bytes() + near_wall.capacity() + wall_support.bytes() +
-           sleep.still.capacity() + sleep.cold.capacity() + repulsion.bytes();
+    return particles.bytes() + neighbours.bytes() + free_way.bytes() + wall_support.bytes() + sleep.still.capacity() +
+           sleep.cold.capacity() + repulsion.bytes();
   }
 };
 

@@ -90,25 +90,23 @@ template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s) {
   if (s.features.sleep) return sort_active(s);
   const auto scope = s.timer.scope("sort and list");
   s.neighbours.rebuild(s.particles);
-  mark_near_wall(s);
+  look_for_walls(s);
   prepare(s);
 }
 
-/// A cluster is near a wall if a particle of it may touch one within a spacing of its way and a body's.
-template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s) {
-  s.near_wall.assign(s.neighbours.clusters(), 0);
+template <int Dim, class Real> void look_for_walls(State<Dim, Real>& s) {
   if (!s.features.contact) return;
+  s.free_way.reset(s.particles.slots());
   if (s.features.bodies) s.bodies.place(s.contact);
   const auto x = s.particles[position];
-  const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
-  for_each_slot(s.neighbours.clusters() - first, [&](std::size_t n) {
-    const std::size_t c = first + n;
-    for (std::size_t k = c * cluster_size; k < (c + 1) * cluster_size; ++k) {
-      if (s.particles.is_padding(k)) continue;
-      Point<Dim> point;
-      for (int d = 0; d < Dim; ++d) point[d] = x[d][k];
-      if (s.contact.may_touch(point, s.parameters.spacing)) s.near_wall[c] = 1;
-    }
+  const std::size_t first = s.neighbours.first_slot(Block::active);
+  const double spacing = s.parameters.spacing;
+  for_each_slot(s.particles.slots() - first, [&](std::size_t k) {
+    const std::size_t slot = first + k;
+    if (s.particles.is_padding(slot)) return;
+    Point<Dim> point;
+    for (int d = 0; d < Dim; ++d) point[d] = x[d][slot];
+    s.free_way.set(slot, s.contact.free_way(point, FreeWay::longest * spacing) / spacing);
   });
   if (s.features.wall_support) s.wall_support.mark(s.particles, s.neighbours.first_slot(Block::warm), s.bodies);
 }
@@ -160,7 +158,7 @@ template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
   template void list_if_due(State<Dim, Real>&);        \
   template void find_all_rates(State<Dim, Real>&);     \
   template void sort_and_list(State<Dim, Real>&);      \
-  template void mark_near_wall(State<Dim, Real>&);     \
+  template void look_for_walls(State<Dim, Real>&);     \
   template void require_sane(const State<Dim, Real>&); \
   template void choose_time_step(State<Dim, Real>&);
 MOLTEN_INSTANTIATE(2, float)

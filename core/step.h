@@ -16,9 +16,11 @@ template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s);
 /// Sorts the particles and lists their neighbours anew, if they have moved far enough since.
 template <int Dim, class Real> void list_if_due(State<Dim, Real>& s);
 
-/// Sorts the particles and lists their neighbours anew; marks the clusters near walls.
+/// Sorts the particles and lists their neighbours anew.
 template <int Dim, class Real> void sort_and_list(State<Dim, Real>& s);
-template <int Dim, class Real> void mark_near_wall(State<Dim, Real>& s);
+
+/// How far each particle may go before it meets a wall, and which clusters walls support; of those awake.
+template <int Dim, class Real> void look_for_walls(State<Dim, Real>& s);
 
 /// Replaces the density by its weighted mean; every so many steps, where the scene asks for it.
 template <int Dim, class Real> void filter_density(State<Dim, Real>& s);

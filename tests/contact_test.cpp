@@ -411,6 +411,25 @@ TEST(Contact, MayTouchNeverLies) {
   EXPECT_GT(far, 8000);
 }
 
+TEST(Contact, NoWallWithinTheFreeWay) {
+  Random<3> random(5);
+  const auto contact = contact_with<3>(
+      {terrain(6, [&](int, int) { return random.uniform(0, 0.5); }, {1, 1}), plane<3>({3, 3, 5}, {0, 0, -1})});
+  const double limit = 3 * radius;
+  int free = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Point<3> x(random.uniform(0, 6), random.uniform(0, 6), random.uniform(0, 1));
+    const double way = contact.free_way(x, limit);
+    const double gap = std::abs(contact.signed_distance(x, limit + 2 * radius)) - radius;
+    ASSERT_NEAR(way, std::clamp(gap, 0.0, limit), 1e-6 * radius);
+    if (way == 0) continue;
+    ++free;
+    auto m = motion<3>(x, 0.999999 * way * random.unit());
+    ASSERT_EQ(contact.move(m, 1), 0);
+  }
+  EXPECT_GT(free, 8000);
+}
+
 TEST(Contact, EmptyAndBadInput) {
   const auto none = contact_with<3>({});
   EXPECT_TRUE(none.empty());

@@ -261,6 +261,13 @@ template <int Dim> bool Contact<Dim>::may_touch(const Point<Dim>& x, double reac
   return impl_->near_wall(x, reach, 0);
 }
 
+template <int Dim> double Contact<Dim>::free_way(const Point<Dim>& x, double limit) const {
+  if (!impl_->near_wall(x, limit, 0)) return limit;
+  const double touching = impl_->radius + 4 * impl_->skin;
+  const auto near = impl_->nearest_any(x, limit + touching);
+  return near.rank < 0 ? limit : std::max(0.0, near.distance - touching);
+}
+
 template <int Dim>
 bool Contact<Dim>::may_touch_body(std::size_t body, const Pose<Dim>& pose, const Point<Dim>& x, double reach) const {
   const auto& group = impl_->bodies[body];

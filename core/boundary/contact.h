@@ -112,7 +112,10 @@ template <int Dim> class Contact {
   /// Bodies count where their motion starts; their own way is part of the reach.
   bool may_touch(const Point<Dim>& x, double reach) const;
 
-  /// The same for the walls of one body when it is at `pose`.
+  /// How far (m) a particle at x may go, or a body come, before they can meet; up to `limit`. A little less than exact.
+  double free_way(const Point<Dim>& x, double limit) const;
+
+  /// `may_touch` for the walls of one body when it is at `pose`.
   bool may_touch_body(std::size_t body, const Pose<Dim>& pose, const Point<Dim>& x, double reach) const;
 
   /// Distance (m) from x to the nearest wall surface and the side: negative behind it. Brute force over what is near up

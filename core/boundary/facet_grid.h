@@ -134,6 +134,11 @@ template <int Dim> inline bool FacetGrid<Dim>::any_within(const Point<Dim>& x, d
 template <int Dim>
 template <class Visit>
 void FacetGrid<Dim>::walk(const Point<Dim>& x, const Point<Dim>& d, Visit&& visit) const {
+  const Point<Dim> to = x + d;
+  if (inside(x) && inside(to) && cell_of(x) == cell_of(to)) {
+    visit(list(cell_of(x)), 1.0);
+    return;
+  }
   double t, last;
   if (brick_.empty() || !part_in_box(origin_, end_, x, d, t, last)) return;
   Index cell = cell_of(Point<Dim>(x + t * d));

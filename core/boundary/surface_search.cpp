@@ -1,5 +1,6 @@
 #include "core/boundary/surface_search.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -122,7 +123,7 @@ void SurfaceSearch<Dim>::come_near(NearestWall<Dim>& best, std::int32_t facet, c
                                    bool past_rims) const {
   const Facet<Dim>& f = surface_.facets()[facet];
   const double height = f.normal.dot(x - f.corner[0]);
-  if (further_than<Dim>(f, x, limit)) return;
+  if (further_than<Dim>(f, x, std::min(limit, (1 + 1e-9) * best.key))) return;
   const auto near = nearest_point(f, x);
   if (!(near.distance < limit)) return;
   const Point<Dim> away = x - near.point;
