@@ -19,10 +19,16 @@ Place place_of(const Scene& scene, const std::string& key) {
   return dot == std::string::npos ? Place{scene.file, 0, 0} : place_of(scene, key.substr(0, dot));
 }
 
+/// Who chose a key of [numerics] that is not in the file.
+std::string chooser_of(const Scene& scene, const std::string& key) {
+  if (!key.starts_with("numerics.") || scene.places.empty() || scene.places.contains(key)) return "";
+  return " (chosen by preset \"" + scene.numerics.preset + "\")";
+}
+
 }  // namespace
 
 void refuse(const Scene& scene, const std::string& key, const std::string& why) {
-  throw Error(ExitCode::usage, text_of(place_of(scene, key)) + ": " + key + ": " + why);
+  throw Error(ExitCode::usage, text_of(place_of(scene, key)) + ": " + key + chooser_of(scene, key) + ": " + why);
 }
 
 }  // namespace molten

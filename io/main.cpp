@@ -30,7 +30,9 @@ void add_run(CLI::App& app, Commands& c) {
   run->add_option("-o,--output", c.run.folder, "Folder of the run (default: runs/<name of the scene>)");
   run->add_option("--threads", c.run.threads, "Threads (default: OMP_NUM_THREADS or all cores)")
       ->check(CLI::Range(1, 4096));
-  run->add_option("--set", c.overrides, "Override a key of the scene: key=value")->allow_extra_args(false);
+  run->add_option("--set", c.overrides, "Override a key of the scene; again for each more")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   run->add_flag("--overwrite", c.run.overwrite, "Replace a run that the folder already holds");
   run->callback([&] {
     c.chosen = [&] {
@@ -45,7 +47,8 @@ void add_resume(CLI::App& app, Commands& c) {
       "resume", "Go on from a run's newest checkpoint\n  molten resume runs/bunny --set run.end_time=0.8");
   resume->add_option("run", c.resume.folder, "Folder of the run")->required();
   resume->add_option("--threads", c.resume.threads, "Threads")->check(CLI::Range(1, 4096));
-  resume->add_option("--set", c.resume.overrides, "Override a key of [run] or [output]: key=value")
+  resume->add_option("--set", c.resume.overrides, "Override a key of [run] or [output]; again for each more")
+      ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   resume->add_flag("--force", c.resume.force, "Go on although the scene, a mesh or the numerics changed");
   resume->callback([&] { c.chosen = [&] { return resume_run(c.resume); }; });
@@ -55,7 +58,9 @@ void add_check(CLI::App& app, Commands& c) {
   CLI::App* check =
       app.add_subcommand("check", "Check a scene and say what a run would take\n  molten check scenes/volcano.toml");
   check->add_option("scene", c.scene, "Scene file")->required();
-  check->add_option("--set", c.overrides, "Override a key of the scene: key=value")->allow_extra_args(false);
+  check->add_option("--set", c.overrides, "Override a key of the scene; again for each more")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   check->callback([&] { c.chosen = [&] { return check_scene(molten::read_scene(c.scene, c.overrides)); }; });
 }
 

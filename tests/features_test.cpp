@@ -312,12 +312,12 @@ TEST(Features, RefusesInternalEnergyOfForcesThatActInPart) {
 TEST(Features, ARefusalSaysWhereTheKeyOrItsTableStands) {
   const auto shifting = [](Scene& s) { s.numerics.shifting = Shifting{}; };
   const auto line = [&](std::map<std::string, Place, std::less<>> places) {
-    return refusal([&](Scene& s) { shifting(s), s.places = places; }).substr(0, 33);
+    return refusal([&](Scene& s) { shifting(s), s.places = places; }).substr(0, 40);
   };
   const Place place{"bad.toml", 7, 3};
-  EXPECT_EQ(line({{"numerics.shifting", place}}), "bad.toml:7:3: numerics.shifting: ");
-  EXPECT_EQ(line({{"numerics", place}}), "bad.toml:7:3: numerics.shifting: ");
-  EXPECT_EQ(line({{"numerics.shifting", {"--set numerics.shifting=true", 0, 0}}}), "--set numerics.shifting=true: num");
+  EXPECT_EQ(line({{"numerics.shifting", place}}), "bad.toml:7:3: numerics.shifting: needs c");
+  EXPECT_EQ(line({{"numerics", place}}), "bad.toml:7:3: numerics.shifting (chosen ");
+  EXPECT_EQ(line({{"numerics.shifting", {"--set numerics.shifting=true", 0, 0}}}), "--set numerics.shifting=true: numerics.s");
 }
 
 TEST(Features, TakesWhatMakesSense) {

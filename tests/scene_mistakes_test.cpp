@@ -70,6 +70,8 @@ const std::vector<Mistake> mistakes = {
      "the time 1 is not later"},
     {"[run]", "[[outflow]]\nplane = { point = [0, 0, 0] }\n[run]", "outflow.0.plane.normal: missing"},
     {"frames_per_second = 50", "frames_per_second = -1", "output.frames_per_second"},
+    {"frames_per_second = 50", "frames_per_second = 1e30",
+     "output.frames_per_second: makes more than ten million frames"},
     {"radius = 0.5", "radius = 0", "fluid.body.0.sphere.radius: 0 is out of range"},
     {"n = 0.5", "n = 0", "fluid.rheology.n: 0 is out of range"},
     {"n = 0.5", "n = 2.1", "give a number above 0 and at most 2"},
@@ -145,7 +147,8 @@ const std::vector<Mistake> mistakes = {
     // choices
     {"model = \"smd\"", "model = \"smt\"", "unknown choice \"smt\"; did you mean smd?"},
     {"kernel = \"gaussian\"", "kernel = \"wendland\"", "did you mean wendland_c2?"},
-    {"preset = \"paiva\"", "preset = \"sphysics\"", "unknown choice \"sphysics\"; known: molten, basic, internal, paiva"},
+    {"preset = \"paiva\"", "preset = \"sphysics\"",
+     "unknown choice \"sphysics\"; known: molten, basic, internal, paiva"},
     {"precision = \"double\"", "precision = \"half\"", "unknown choice \"half\""},
     {"periodic = [\"x\"]", "periodic = [\"w\"]", "\"w\" is no axis; this scene has x, y, z"},
     {"periodic = [\"x\"]", "periodic = [\"x\", \"x\"]", "has \"x\" twice"},

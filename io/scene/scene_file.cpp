@@ -167,6 +167,8 @@ void check_field_names(const TomlReader& keys, const std::vector<std::string>& f
   }
 }
 
+constexpr double most_frames = 1e7;
+
 Output read_output(const TomlReader& root) {
   const auto keys =
       root.table("output", {"frames_per_second", "fields", "series_every", "checkpoint_every", "checkpoints_kept"});
@@ -215,6 +217,8 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   scene.run = read_run(root);
   scene.output = read_output(root);
   note_places(document, document.root, "", scene);
+  if (scene.run.end_time * scene.output.frames_per_second > most_frames)
+    refuse(scene, "output.frames_per_second", "makes more than ten million frames until run.end_time; lower it");
   features_of(scene);  // refuses what does not go together
   return scene;
 }
