@@ -59,39 +59,44 @@ template <int Dim, class Real> class Drift {
 template <int Dim, class Real> class Mover {
  public:
   explicit Mover(const State<Dim, Real>& s)
-      : s_(s), way_(longest_way() / s.parameters.spacing), part_(FreeWay::part_of(std::min(way_, FreeWay::longest))) {}
+      : s_(s),
+        contact_(s.features.contact),
+        way_(longest_way() / s.parameters.spacing),
+        part_(FreeWay::part_of(std::min(way_, FreeWay::longest))) {}
 
   /// Moves one particle by a step along its rate; says whether it bounced.
   bool move(std::size_t slot, Motion<Dim>& m) const {
-    if (s_.features.contact && may_bounce(slot)) return s_.contact.move(m, s_.clock.dt) > 0;
+    if (contact_ && may_bounce(slot)) return s_.contact.move(m, s_.clock.dt) > 0;
     m.position += s_.clock.dt * m.rate;
     return false;
   }
 
-  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent or a wall moves, does
-  /// not count. `kicks`: what bodies give to particles is added.
+  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent
+  /// or a wall moves, does not count. `kicks`: what bodies give to particles is added.
   ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
-    const Vec<Dim, ClusterLanes> before = m.position;
+    if (may_collide(cluster)) {
+      ClusterMotion<Dim> moved = m;  // a copy for the other function: elsewhere the motion stays in registers
+      const ClusterLanes bounced = collide_cluster(cluster, moved, kicks);
+      m = moved;
+      return bounced;
+    }
     m.position += ClusterLanes(s_.clock.dt) * m.rate;
-    if (!may_collide(cluster)) return ClusterLanes(0.0);
-    ClusterMotion<Dim> moved = m;  // a copy for the other function: elsewhere the motion stays in registers
-    const ClusterLanes bounced = collide_cluster(cluster, before, moved, kicks);
-    m = moved;
-    return bounced;
+    return ClusterLanes(0.0);
   }
 
  private:
   bool may_collide(std::size_t cluster) const {
-    return s_.features.contact && (way_ > FreeWay::longest || s_.free_way.any_within(part_, cluster));
+    return contact_ && (way_ > FreeWay::longest || s_.free_way.any_within(part_, cluster));
   }
   bool may_bounce(std::size_t slot) const {
     return (way_ > FreeWay::longest || s_.free_way.within(part_, slot)) && !s_.particles.is_padding(slot) &&
            !(inlet_ && inlet_[slot] >= 0) && !(held_ && held_[slot] > 0);
   }
 
-  /// `m`: where they get without walls, and then with them.
-  [[gnu::noinline]] ClusterLanes collide_cluster(std::size_t cluster, const Vec<Dim, ClusterLanes>& before,
-                                                 ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
+  [[gnu::noinline]] ClusterLanes collide_cluster(std::size_t cluster, ClusterMotion<Dim>& m,
+                                                 std::span<Kick<Dim>> kicks) const {
+    const Vec<Dim, ClusterLanes> before = m.position;
+    m.position += ClusterLanes(s_.clock.dt) * m.rate;
     ClusterLanes bounced(0.0);
     for (int n = 0; n < cluster_size; ++n)
       if (may_bounce(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(before, m, n, kicks)));
@@ -122,6 +127,7 @@ template <int Dim, class Real> class Mover {
   }
 
   const State<Dim, Real>& s_;
+  bool contact_;
   double way_;         // spacings; no particle gets further from where it was sorted by the end of this step
   std::uint8_t part_;  // the same for the free ways
   const std::int64_t* inlet_ = s_.particles[inlet][0];  // null without vents
