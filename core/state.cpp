@@ -1,7 +1,9 @@
 #include "core/state.h"
 
 #include <limits>
+#include <optional>
 
+#include "core/hydrostatic.h"
 #include "core/particle_pass.h"
 #include "core/step.h"
 
@@ -52,10 +54,16 @@ template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
 
 namespace {
 
+template <int Dim, class Real> void compress(Particles<Dim, Real>& p, std::size_t slot, double value) {
+  p[compression][0][slot] = static_cast<Real>(value);
+  if (p.has(half_compression)) p[half_compression][0][slot] = p[compression][0][slot];
+}
+
 /// Puts boundary particles into the slots from `first` on. At first they have the pressure of the fluid at rest beside
 /// them, if the fluid starts with that.
 template <int Dim, class Real>
-void hold(State<Dim, Real>& s, const std::vector<HeldPoint<Dim>>& points, std::size_t first, const Start& start) {
+void hold(State<Dim, Real>& s, const std::vector<HeldPoint<Dim>>& points, std::size_t first, const Start& start,
+          const std::optional<FluidAtRest<Dim>>& at_rest) {
   Particles<Dim, Real>& p = s.particles;
   const Parameters<Dim>& q = s.parameters;
   Point<Dim> lower = Point<Dim>::Constant(std::numeric_limits<double>::max()), upper = -lower;
@@ -69,15 +77,9 @@ void hold(State<Dim, Real>& s, const std::vector<HeldPoint<Dim>>& points, std::s
         point.body < 0 ? point.at : s.bodies.motion(static_cast<std::size_t>(point.body)).start.to_world(point.at);
     p[id][0][slot] = static_cast<std::int64_t>(slot);
     p[held][0][slot] = static_cast<Real>(point.body + 2);
-    double depth = q.surface_potential.value_or(0);
-    for (int d = 0; d < Dim; ++d) {
-      p[position][d][slot] = x[d];
-      depth += q.gravity[d] * x[d];
-    }
+    for (int d = 0; d < Dim; ++d) p[position][d][slot] = x[d];
     const bool beside = ((x - lower + margin).array() >= 0).all() && ((upper + margin - x).array() >= 0).all();
-    if (!q.surface_potential || !beside || depth < 0) continue;
-    p[compression][0][slot] = static_cast<Real>(q.eos.compression_at_rest(depth));
-    if (p.has(half_compression)) p[half_compression][0][slot] = p[compression][0][slot];
+    if (at_rest && beside) compress(p, slot, at_rest->compression(x));
   }
 }
 
@@ -110,6 +112,9 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
     for (auto* column : p[F{}].c) std::fill_n(column, p.slots(), std::remove_pointer_t<decltype(column)>(0));
   });
   std::fill_n(p[id][0], p.slots(), padding_id);
+  // Boundary particles are not squeezed with the fluid.
+  std::optional<FluidAtRest<Dim>> at_rest;
+  if (parameters.surface_potential) at_rest.emplace(parameters, start, !features.boundary_particles);
   for (std::size_t k = 0; k < fluid; ++k) {
     p[id][0][k] = static_cast<std::int64_t>(k);
     for (int d = 0; d < Dim; ++d) {
@@ -118,14 +123,12 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
       if (p.has(half_velocity)) p[half_velocity][d][k] = p[velocity][d][k];
     }
     if (p.has(temperature)) p[temperature][0][k] = start.temperature[k];
-    if (parameters.surface_potential) {
-      double depth = *parameters.surface_potential;
-      for (int d = 0; d < Dim; ++d) depth += parameters.gravity[d] * start.position[k][d];
-      p[compression][0][k] = static_cast<Real>(parameters.eos.compression_at_rest(depth));
-      if (p.has(half_compression)) p[half_compression][0][k] = p[compression][0][k];
-    }
+    if (!at_rest) continue;
+    const Point<Dim> x = at_rest->place(start, k);
+    for (int d = 0; d < Dim; ++d) p[position][d][k] = x[d];
+    compress(p, k, at_rest->compression(x));
   }
-  if (features.boundary_particles) hold(s, around.held, fluid, start);
+  if (features.boundary_particles) hold(s, around.held, fluid, start, at_rest);
   if (features.vents) open_vents(s);
   sort_and_list(s);
   return s;

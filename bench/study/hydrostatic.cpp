@@ -1,6 +1,7 @@
 // Fluids at rest between walls: water in a tank and in a bowl, and a layer on a slope below its yield stress.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "bench/study/list.h"
 #include "bench/study/metrics.h"
@@ -14,14 +15,18 @@ namespace {
 constexpr double gravity = 9.81, density = 1000, depth = 1;      // m/s², kg/m³, m
 const double sound_speed = 10 * std::sqrt(2 * gravity * depth);  // m/s
 
-/// Pressure at the height y of water whose surface is at `level`, for sound of speed c: p' = −ρ g with p = c²(ρ − ρ0).
-/// (With Tait the difference is of second order in gH/c².)
-double pressure_at_rest(double y, double level, double c) {
-  return c * c * density * std::expm1(gravity * (level - y) / (c * c));
+/// Water; the numerics may replace the equation of state, but not its sound speed.
+const EquationOfState water{StateEquation::tait, density, sound_speed, 7};
+
+/// Pressure (Pa) of a fluid at rest, `below` (m) its surface.
+double pressure_at_rest(const EquationOfState& eos, double below) {
+  return eos.pressure(eos.compression_at_rest(gravity * below));
 }
 
-/// The level of a column whose weight is that of `depth` uncompressed.
-double level_of_column(double c) { return c * c / gravity * std::log1p(gravity * depth / (c * c)); }
+/// The level (m) of a column that is `depth` high uncompressed.
+double level_of_column(const EquationOfState& eos) {
+  return eos.potential_at_rest(eos.compression(density * gravity * depth)) / gravity;
+}
 
 /// Pressure at height 0 of the line that fits the particles below `top` best.
 double pressure_at_floor(const Cloud& c, int up, double top) {
@@ -35,7 +40,8 @@ double pressure_at_floor(const Cloud& c, int up, double top) {
 }
 
 /// Runs for 30 √(H/g) and judges pressure, floor pressure and the kinetic energy of the last second.
-void judge_rest(const Request& r, Report& report, const Setup& s, int up, double level, double energy_reach) {
+void judge_rest(const Request& r, Report& report, const Setup& s, int up,
+                const std::function<double(const EquationOfState&)>& level_of, double energy_reach) {
   report.expect("pressure_l2", 0.01);
   report.expect("floor_pressure", 0.01);
   report.expect("kinetic_energy", energy_reach);
@@ -46,15 +52,15 @@ void judge_rest(const Request& r, Report& report, const Setup& s, int up, double
     if (c.time >= end - 1) energy += kinetic_energy(c), ++samples;
   });
   const Cloud c = simulation->cloud();
+  const double level = level_of(c.eos);
   FieldError pressure;
   double potential = 0;
   for (std::size_t k = 0; k < c.count(); ++k) {
-    pressure.add(c.pressure[k], pressure_at_rest(c.position[k][up], level, c.sound_speed));
+    pressure.add(c.pressure[k], pressure_at_rest(c.eos, level - c.position[k][up]));
     potential += c.mass * gravity * c.position[k][up];
   }
   report.judge("pressure_l2", pressure.l2());
-  report.judge("floor_pressure",
-               std::abs(pressure_at_floor(c, up, depth / 4) / pressure_at_rest(0, level, c.sound_speed) - 1));
+  report.judge("floor_pressure", std::abs(pressure_at_floor(c, up, depth / 4) / pressure_at_rest(c.eos, level) - 1));
   report.judge("kinetic_energy", energy / samples / potential);
 }
 
@@ -64,17 +70,6 @@ std::string numerics_text() {
   return fmt::format("{}{}smoothing_ratio = 1.5\n", sound_speed_text(sound_speed), wall_support_text());
 }
 
-/// Squeezes a column that is `depth` high uncompressed so that it carries its own weight.
-void squeeze(Start& start, int up) {
-  const double part = gravity / (sound_speed * sound_speed);  // 1/m
-  for (Triple& x : start.position) x[up] = -std::log1p(-part * x[up] / (1 + part * depth)) / part;
-}
-
-void start_at_rest(Setup& s, int up, double level) {
-  s.start.velocity.assign(s.start.position.size(), Triple{});
-  for (const Triple& x : s.start.position) s.pressure.push_back(pressure_at_rest(x[up], level, sound_speed));
-}
-
 void run_box(const Request& r, Report& report) {
   const int dimensions = r["dimensions"] == 3 ? 3 : 2, up = dimensions - 1;
   const double spacing = depth / static_cast<double>(r.size);
@@ -82,13 +77,11 @@ void run_box(const Request& r, Report& report) {
   Triple fluid{width, width, width}, tank = fluid, g{};
   fluid[up] = depth, tank[up] = 2 * depth, g[up] = -gravity;
   Setup s;
-  s.scene = scene_head(dimensions, g) + fluid_text(dimensions, spacing, density) + numerics_text() +
+  s.scene = scene_head(dimensions, g) + fluid_text(dimensions, spacing, density, "hydrostatic = true") +
+            numerics_text() +
             fmt::format("[[boundary]]\nbox = {}\ninside = true\nslip = 1\n", box_text(dimensions, {}, tank));
   s.start = lattice(dimensions, {}, fluid, spacing);
-  squeeze(s.start, up);
-  const double level = level_of_column(sound_speed);
-  start_at_rest(s, up, level);
-  judge_rest(r, report, s, up, level, 1e-6);
+  judge_rest(r, report, s, up, level_of_column, 1e-6);
 }
 
 /// The lower half of a ball of radius `depth` on z = 0, in shells a spacing apart from half a spacing before the wall
@@ -107,9 +100,9 @@ Start half_ball(double spacing) {
   }
   constexpr int layers = 1000;
   for (int k = 0; k < layers; ++k) {
-    const double z = (k + 0.5) * depth / layers, pressure = pressure_at_rest(z, depth, sound_speed);
-    const double relative_density = 1 + pressure / (sound_speed * sound_speed * density);
-    start.measure += relative_density * M_PI * z * (2 * depth - z) * depth / layers;
+    const double z = (k + 0.5) * depth / layers;
+    start.measure +=
+        (1 + water.compression_at_rest(gravity * (depth - z))) * M_PI * z * (2 * depth - z) * depth / layers;
   }
   return start;
 }
@@ -121,8 +114,10 @@ void run_bowl(const Request& r, Report& report) {
             fmt::format("[[boundary]]\nsphere = {{ center = [0, 0, {}], radius = {} }}\ninside = true\nslip = 1\n",
                         depth, depth);
   s.start = half_ball(spacing);
-  start_at_rest(s, 2, depth);
-  judge_rest(r, report, s, 2, depth, 1e-5);
+  s.start.velocity.assign(s.start.position.size(), Triple{});
+  for (const Triple& x : s.start.position) s.pressure.push_back(pressure_at_rest(water, depth - x[2]));
+  judge_rest(
+      r, report, s, 2, [](const EquationOfState&) { return depth; }, 1e-5);
 }
 
 // ---- a slope --------------------------------------------------------------------------------------------------------

@@ -51,7 +51,7 @@ template <int Dim, class Real> class Engine : public Simulation {
     c.spacing = p.spacing;
     c.mass = p.particle_mass;
     c.smoothing_length = p.smoothing_length;
-    c.sound_speed = p.eos.sound_speed;
+    c.eos = p.eos;
     const auto x = state_.particles[position];
     const auto v = state_.particles[velocity];
     const Real* held_by = state_.particles[held][0];  // null without boundary particles

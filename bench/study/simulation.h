@@ -9,6 +9,7 @@
 
 #include "bench/study/case.h"
 #include "core/parameters.h"
+#include "core/physics/pressure.h"
 #include "core/snapshot.h"
 
 namespace molten::study {
@@ -18,7 +19,7 @@ using Triple = std::array<double, 3>;
 /// Every particle of the fluid at one moment; z = 0 in 2-D.
 struct Cloud {
   double time = 0, spacing = 0;            // s, m
-  double sound_speed = 0;                  // m/s
+  EquationOfState eos;
   double mass = 0, smoothing_length = 0;   // of a particle, kg (2-D: kg/m); m
   std::vector<std::int64_t> id;            // place in Setup::start
   std::vector<Triple> position, velocity;  // m, m/s

@@ -64,6 +64,12 @@ struct EquationOfState {
     if (kind != StateEquation::tait || gamma == 1) return std::expm1(part);
     return std::expm1(std::log1p((gamma - 1) * part) / (gamma - 1));
   }
+  /// The φ at which a fluid at rest is compressed so, m²/s².
+  double potential_at_rest(double compression) const {
+    const double c2 = sound_speed * sound_speed;
+    if (kind != StateEquation::tait || gamma == 1) return c2 * std::log1p(compression);
+    return c2 * std::expm1((gamma - 1) * std::log1p(compression)) / (gamma - 1);
+  }
 };
 
 }  // namespace molten
