@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "bench/study/channel_profile.h"
 #include "bench/study/list.h"
 #include "bench/study/metrics.h"
 #include "bench/study/particles.h"
@@ -123,9 +124,11 @@ void run_bowl(const Request& r, Report& report) {
 // ---- a slope --------------------------------------------------------------------------------------------------------
 
 /// A layer of SMD fluid (units of its depth, density and ρg) on a slope, periodic along it. Its largest stress is below
-/// the yield stress, so it only creeps, as a fluid of the viscosity η0 would: ρ g sinθ H²/(2η0) at its surface.
+/// the yield stress, so it only creeps, and hardly faster than a fluid of the viscosity η0 would: ρ g sinθ H²/(2η0) at
+/// its surface. How much faster the SMD curve itself says: 1.07 times at 0.3 of the yield stress, 1.15 times at half.
 void run_slope(const Request& r, Report& report) {
   report.expect("creep", 1.1);
+  report.expect("surface_speed", 0.02);
   const double angle = r["slope"] * M_PI / 180, spacing = 1 / static_cast<double>(r.size), length = 8 * spacing;
   const double stress = std::sin(angle), yield_stress = stress / r["part_of_yield"];
   const double viscosity = (r["jump_number"] + 1) * yield_stress;  // γ̇1 = 1
@@ -145,7 +148,11 @@ void run_slope(const Request& r, Report& report) {
   double speed = 0, count = 0;
   for (std::size_t k = 0; k < c.count(); ++k)
     if (c.position[k][1] > 1 - 1.5 * spacing) speed += c.velocity[k][0], ++count;
+  const auto stress_of = [&](double strain) { return yield_stress * smd_stress(strain, r["jump_number"], 0.5); };
+  // Half a channel's stress falls as a layer's; its middle is the surface.
+  const double exact = ChannelProfile(stress_of, stress).at(0);
   report.judge("creep", count > 0 ? speed / count / (stress / (2 * viscosity)) : no_reach);
+  report.judge("surface_speed", count > 0 ? std::abs(speed / count / exact - 1) : no_reach);
 }
 
 }  // namespace
@@ -175,12 +182,12 @@ Case hydrostatic_bowl() {
 Case slope_yield() {
   return {"slope-yield",
           "a layer of SMD fluid on a slope below its yield stress; its surface's speed over that of a fluid of the "
-          "viscosity at rest",
+          "viscosity at rest, and against that of the SMD fluid",
           "particles a depth",
           16,
           4,
           {{"slope", 20, "degrees"},
-           {"part_of_yield", 0.5, "stress at the slope over the yield stress"},
+           {"part_of_yield", 0.3, "stress at the slope over the yield stress"},
            {"jump_number", 150, "J"},
            {"end_time", 0.2, "√(depth/g)"}},
           run_slope};
