@@ -44,16 +44,37 @@ double speed_of(const Boundary& b, double arm) {
   return fastest;
 }
 
+/// Turning walls are taken as large as the fluid around them (m).
+double arm_of(const Scene& scene, const Extent& extent) {
+  double diagonal2 = 0;
+  for (int d = 0; d < scene.dimensions; ++d) diagonal2 += std::pow(extent.upper[d] - extent.lower[d], 2);
+  return std::sqrt(diagonal2) / 2;
+}
+
+/// The fluid follows walls, and what is much faster than sound counts as a run that blew up.
+void require_slow_walls(const Scene& scene, const Extent& extent, double sound_speed) {
+  constexpr double fastest = 3e8, most = 30;  // m/s, of light; sound speeds
+  for (std::size_t k = 0; k < scene.boundaries.size(); ++k) {
+    const Boundary& b = scene.boundaries[k];
+    const double speed = speed_of(b, arm_of(scene, extent));
+    const std::string key = "boundary." + std::to_string(k) + (b.motion ? ".motion" : b.body ? ".body" : ".velocity");
+    if (!(speed < fastest))
+      refuse(scene, key, "moves faster than light; give velocities in m/s, spins in degrees/s and times in s");
+    if (speed > most * sound_speed)
+      refuse(scene, key,
+             "moves at " + std::to_string(speed) + " m/s, more than 30 times the sound speed of " +
+                 std::to_string(sound_speed) + " m/s; slow it down or raise numerics.sound_speed");
+  }
+}
+
 /// Ten times the speed that the fluid reaches by falling its own height, or that fluid, walls or vents start with.
 double default_sound_speed(const Scene& scene, const Start& start, const Extent& extent) {
   double fall = 0;  // g · height, m²/s²
   for (int d = 0; d < scene.dimensions; ++d)
     fall += std::abs(scene.gravity[d]) * (extent.upper[d] - extent.lower[d] + start.spacing);
-  double fastest = start.vent_speed, diagonal2 = 0;
+  double fastest = start.vent_speed;
   for (const auto& v : start.velocity) fastest = std::max(fastest, norm(v));
-  for (int d = 0; d < scene.dimensions; ++d) diagonal2 += std::pow(extent.upper[d] - extent.lower[d], 2);
-  const double arm = std::sqrt(diagonal2) / 2;  // turning walls are as large as the fluid around them
-  for (const Boundary& b : scene.boundaries) fastest = std::max(fastest, speed_of(b, arm));
+  for (const Boundary& b : scene.boundaries) fastest = std::max(fastest, speed_of(b, arm_of(scene, extent)));
   return 10 * std::sqrt(2 * fall + fastest * fastest + 1e-12);
 }
 
@@ -177,6 +198,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
            n.gamma};
   if (n.state_equation == StateEquation::ideal_gas)
     p.eos.sound_speed = std::sqrt(n.stiffness.value_or(p.eos.sound_speed * p.eos.sound_speed));
+  require_slow_walls(scene, extent, p.eos.sound_speed);
   if (scene.fluid.hydrostatic) p.surface_potential = surface_potential(scene, start);
   const Rheology& r = scene.fluid.rheology;
   p.viscosity = r.viscosity;

@@ -370,7 +370,19 @@ TEST(BoundaryParticles, RefuseWhatTheyDoNotKnow) {
   expect_complaint(refusal(tank_text(2, 0.4, repulsive) + moving),
                    "boundary.1.motion: repulsive boundary particles stay");
   const std::string small = replaced(good, "dimensions = 2", "dimensions = 2\ndomain = { min = [0, 0], max = [1, 1] }");
-  expect_complaint(refusal(small), "scene.domain: leaves boundary particles outside");
+  expect_complaint(refusal(small), "scene.domain: leaves boundary particles of boundary.0 outside; widen it by 0.1 m");
+}
+
+TEST(BoundaryParticles, RefuseWallsFarLargerThanTheFluidAtOnce) {
+  for (const std::string& kind : {dynamic, repulsive}) {
+    const std::string domain = "dimensions = 2\ndomain = { min = [-9, -9], max = [9, 1e13] }";
+    const std::string huge =
+        replaced(replaced(tank_text(2, 0.4, kind), "[1, 1]", "[1, 1e12]"), "dimensions = 2", domain);
+    expect_complaint(refusal(huge), "boundary.0: ");
+    expect_complaint(refusal(huge), "as boundary particles; give a smaller wall or a larger spacing");
+  }
+  const std::string far = replaced(tank_text(2, 0.4, dynamic), "[1, 1]", "[1, 1e4]");
+  expect_complaint(refusal(far), "boundary.0: reaches 9.95e+03 m beyond where boundary particles are kept");
 }
 
 TEST(BoundaryParticles, ScenesSayWhichOnes) {

@@ -134,18 +134,23 @@ TEST_F(MeshFile, AllFormatsGiveTheSameClosedMesh) {
   }
 }
 
-/// A tetrahedron of corners (0, 0, 0) and the unit vectors, its node twice as large and shifted by (1, 2, 3).
-std::string glb_tetrahedron() {
+/// A tetrahedron of corners (0, 0, 0) and the unit vectors, its node twice as large and shifted by (1, 2, 3); `placing`
+/// says so.
+std::string glb_tetrahedron(const std::string& placing = R"("scale":[2,2,2],"translation":[1,2,3])",
+                            int last_corner = 3, const std::string& corners = "12") {
   std::string data;
   for (const Vec3& v : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) append_point(data, v);
-  for (const int i : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}) append(data, static_cast<std::uint16_t>(i));
+  for (const int i : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, last_corner}) append(data, static_cast<std::uint16_t>(i));
   std::string json =
       R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"buffers":[{"byteLength":72}],)"
-      R"("nodes":[{"mesh":0,"scale":[2,2,2],"translation":[1,2,3]}],)"
+      R"("nodes":[{"mesh":0,)" +
+      placing +
+      R"(}],)"
       R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
       R"("bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],)"
       R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},)"
-      R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})";
+      R"({"bufferView":1,"componentType":5123,"count":)" +
+      corners + R"(,"type":"SCALAR"}]})";
   json.resize((json.size() + 3) / 4 * 4, ' ');
   std::string bytes = "glTF";
   append(bytes, std::uint32_t{2});
@@ -170,6 +175,29 @@ TEST_F(MeshFile, TruncatedGltfIsRefused) {
   const std::string bytes = glb_tetrahedron();
   for (const double part : {0.01, 0.3, 0.8, 0.99})
     EXPECT_NE(refusal("a.glb", bytes.substr(0, static_cast<std::size_t>(part * bytes.size()))), "") << part;
+}
+
+TEST_F(MeshFile, GltfWithFacesOfNothingIsRefused) {
+  const std::string placing = R"("scale":[1,1,1])";
+  EXPECT_EQ(refusal("a.glb", glb_tetrahedron(placing)), "");
+  EXPECT_NE(refusal("a.glb", glb_tetrahedron(placing, 4)).find("names vertex 4 of 4"), std::string::npos);
+  EXPECT_NE(refusal("a.glb", glb_tetrahedron(placing, 3, "11")).find("no whole triangles"), std::string::npos);
+  EXPECT_NE(refusal("a.glb", glb_tetrahedron(placing, 3, "399")).find("truncated"), std::string::npos);
+}
+
+TEST_F(MeshFile, GltfWithAPlacingThatIsNoneIsRefused) {
+  const auto complaint = [&](const std::string& placing) { return refusal("a.glb", glb_tetrahedron(placing)); };
+  EXPECT_EQ(complaint(R"("matrix":[1,0,0,0,0,0,1,0,0,-1,0,0,3,0,0,1])"), "");
+  for (const auto& [placing, what] :
+       std::vector<std::array<std::string, 2>>{{R"("matrix":[0,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1])", "flattens"},
+                                               {R"("matrix":[1,0,0,5,0,1,0,0,0,0,1,0,0,0,0,1])", "last row"},
+                                               {R"("matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,0])", "last row"},
+                                               {R"("matrix":[1,0,0,0,0,1,0,0,0])", "needs 16 numbers"},
+                                               {R"("matrix":["a",0,0,0,0,1,0,0,0,0,1,0,0,0,0,1])", "needs 16 numbers"},
+                                               {R"("matrix":[1e30,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1])", "below 1e15"},
+                                               {R"("scale":[1,0,1])", "scales by 0"},
+                                               {R"("translation":[1,2])", "needs 3 numbers"}})
+    EXPECT_NE(complaint(placing).find(what), std::string::npos) << placing << ": " << complaint(placing);
 }
 
 TEST_F(MeshFile, TheHandIsClosed) {

@@ -118,30 +118,30 @@ double available_memory() {
   return 1e300;
 }
 
-void require_memory(const Scene& scene, double particles) {
+/// `key` asks for them.
+void require_memory(const Scene& scene, const std::string& key, double particles, const char* cure) {
   constexpr double bytes_a_particle = 600;  // state, set-up and one frame at their largest
   const double wanted = particles * bytes_a_particle, there = available_memory();
   if (particles < 2e9 && wanted < there) return;
-  throw Error(ExitCode::usage,
-              fmt::format("{}:{}: fluid: {:.3g} particles need about {:.3g} GB and {:.3g} GB are free; "
-                          "ask for fewer particles or a larger spacing",
-                          scene.file, scene.fluid.place.line, particles, wanted / 1e9, there / 1e9));
+  refuse(scene, key,
+         fmt::format("{:.3g} particles need about {:.3g} GB and {:.3g} GB are free; {}", particles, wanted / 1e9,
+                     there / 1e9, cure));
 }
 
 /// Powers of the smoothing length up to the fifth must fit into single precision.
 void require_runnable_size(const Scene& scene, double spacing) {
   if (spacing >= 1e-6 && spacing <= 1e6) return;
-  throw Error(ExitCode::usage,
-              fmt::format("{}:{}: fluid: the particles come out {:.3g} m apart, and spacings from 1e-6 to 1e6 m can be "
-                          "run; give the body's size in metres",
-                          scene.file, scene.fluid.place.line, spacing));
+  refuse(scene, "fluid",
+         fmt::format("the particles come out {:.3g} m apart, and spacings from 1e-6 to 1e6 m can be run; give the "
+                     "body's size in metres",
+                     spacing));
 }
 
 Filling filled(const Scene& scene, const std::vector<Region>& regions) {
   try {
     return fill(regions, scene.dimensions, scene.fluid.particles, scene.fluid.spacing);
   } catch (const Error& e) {
-    throw Error(e.code(), fmt::format("{}:{}: fluid: {}", scene.file, scene.fluid.place.line, e.what()));
+    throw Error(e.code(), fmt::format("{}: fluid: {}", text_of(scene.fluid.place), e.what()));
   }
 }
 
@@ -173,8 +173,9 @@ Start fill_bodies(const Scene& scene, const Features& features) {
     describe_vents(scene, start);
     return start;
   }
-  require_memory(scene,
-                 fluid.spacing ? measure / std::pow(*fluid.spacing, scene.dimensions) : double(*fluid.particles));
+  require_memory(scene, "fluid",
+                 fluid.spacing ? measure / std::pow(*fluid.spacing, scene.dimensions) : double(*fluid.particles),
+                 "ask for fewer particles or a larger spacing");
   const Filling filling = filled(scene, regions);
 
   Start start;
@@ -276,13 +277,47 @@ StillWater still_water(const Start& start, const Parameters<Dim>& p, const std::
   return water;
 }
 
+/// Of a wall that ends, m² (2-D: m).
+template <int Dim> double size_of(const Wall<Dim>& wall) {
+  double size = 0;
+  for (const auto& f : wall.facets) {
+    const Point<Dim> a = wall.vertices[f[1]] - wall.vertices[f[0]];
+    if constexpr (Dim == 3)
+      size += a.cross(Point<3>(wall.vertices[f[2]] - wall.vertices[f[0]])).norm() / 2;
+    else
+      size += a.norm();
+  }
+  return size;
+}
+
+/// Before they are made: `rows` of boundary particles `pitch` (m) apart.
+template <int Dim>
+void require_memory_on(const Scene& scene, const std::vector<Wall<Dim>>& walls, double pitch, int rows) {
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    if (!walls[k].is_plane)
+      require_memory(scene, fmt::format("boundary.{}", k), rows * size_of(walls[k]) / std::pow(pitch, Dim - 1),
+                     "as boundary particles; give a smaller wall or a larger spacing");
+}
+
 /// A boundary particle beyond the domain would be dropped with the first sort.
 template <int Dim>
-void require_in_domain(const Scene& scene, const std::vector<HeldPoint<Dim>>& held, const Parameters<Dim>& p) {
-  for (const HeldPoint<Dim>& point : held)
-    for (int d = 0; d < Dim; ++d)
-      if (point.body < 0 && (point.at[d] < p.domain.lower[d] || point.at[d] > p.domain.upper[d]))
-        refuse(scene, "scene.domain", "leaves boundary particles outside; widen it by two spacings");
+void require_in_domain(const Scene& scene, const std::vector<Wall<Dim>>& walls, const Parameters<Dim>& p) {
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    if (walls[k].is_plane || walls[k].body >= 0) continue;
+    double beyond = -1e300;
+    for (const Point<Dim>& v : walls[k].vertices)
+      for (int d = 0; d < Dim; ++d) beyond = std::max({beyond, p.domain.lower[d] - v[d], v[d] - p.domain.upper[d]});
+    beyond += 2 * p.spacing;  // the second row
+    if (beyond <= 0) continue;
+    const std::string key = fmt::format("boundary.{}", k);
+    if (scene.domain)
+      refuse(scene, "scene.domain",
+             fmt::format("leaves boundary particles of {} outside; widen it by {:.3g} m", key, beyond));
+    refuse(scene, key,
+           fmt::format("reaches {:.3g} m beyond where boundary particles are kept, a hundred times the fluid's size to "
+                       "each side; make it smaller, or give scene.domain, which says how far",
+                       beyond));
+  }
 }
 
 template <int Dim>
@@ -290,9 +325,10 @@ std::vector<HeldPoint<Dim>> build_held(const Scene& scene, const Start& start, c
                                        const std::vector<Wall<Dim>>& walls) {
   const auto& asked = scene.numerics.boundary_particles;
   if (!asked || asked->kind != BoundaryParticles::Kind::dynamic) return {};
-  std::vector<HeldPoint<Dim>> held = held_points(walls, held_pitch<Dim>(start.spacing));
-  require_in_domain(scene, held, p);
-  return held;
+  require_in_domain(scene, walls, p);
+  const double pitch = held_pitch<Dim>(start.spacing);
+  require_memory_on(scene, walls, pitch, 2);
+  return held_points(walls, pitch);
 }
 
 template <int Dim>
@@ -300,6 +336,7 @@ Repulsion<Dim> build_repulsion(const Scene& scene, const Start& start, const Par
                                const std::vector<Wall<Dim>>& walls) {
   const auto& asked = scene.numerics.boundary_particles;
   if (!asked || asked->kind != BoundaryParticles::Kind::repulsive || walls.empty()) return {};
+  require_memory_on(scene, walls, start.spacing, 1);
   auto points = repulsive_points(walls, start.spacing);
   const StillWater water = still_water(start, p, points);
   return {std::move(points), p, water};

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -267,6 +268,102 @@ class PlyCheck {
   double vertices_;
 };
 
+// ---- binary glTF ---------------------------------------------------------------------------------------------------
+
+/// What assimp takes as it comes: it leaves out triangles whose corners do not exist, and flattens by any matrix.
+class GlbCheck {
+ public:
+  GlbCheck(std::string_view json, std::string_view buffer) : root_(Json::parse(json, nullptr, false)), buffer_(buffer) {
+    if (root_.is_discarded() || !root_.is_object()) refuse("its JSON chunk is not JSON");
+  }
+
+  void run() const {
+    for (const Json& mesh : list(root_, "meshes"))
+      for (const Json& primitive : list(mesh, "primitives")) check_triangles(primitive);
+    for (const Json& node : list(root_, "nodes")) check_placing(node);
+  }
+
+ private:
+  using Json = nlohmann::json;
+
+  static const Json& list(const Json& parent, const char* name) {
+    static const Json none = Json::array();
+    const auto found = parent.is_object() ? parent.find(name) : parent.end();
+    return found != parent.end() && found->is_array() ? *found : none;
+  }
+  /// A whole number; `otherwise` where there is none.
+  static std::uint64_t whole(const Json& parent, const char* name, std::uint64_t otherwise) {
+    const auto found = parent.find(name);
+    if (found == parent.end()) return otherwise;
+    if (!found->is_number_unsigned()) refuse(std::string("its ") + name + " is no whole number");
+    return found->get<std::uint64_t>();
+  }
+  const Json& entry(const char* array, std::uint64_t index) const {
+    const Json& all = list(root_, array);
+    if (index >= all.size() || !all[index].is_object())
+      refuse(std::string("it names an entry of ") + array + " that does not exist");
+    return all[index];
+  }
+
+  void check_triangles(const Json& primitive) const {
+    constexpr std::uint64_t triangles = 4, none = std::numeric_limits<std::uint64_t>::max();
+    if (!primitive.is_object() || whole(primitive, "mode", triangles) != triangles) return;
+    const auto attributes = primitive.find("attributes");
+    if (attributes == primitive.end() || !attributes->contains("POSITION")) return;
+    const std::uint64_t vertices = whole(entry("accessors", whole(*attributes, "POSITION", 0)), "count", 0);
+    const std::uint64_t at = whole(primitive, "indices", none);
+    const std::uint64_t corners = at == none ? vertices : whole(entry("accessors", at), "count", 0);
+    if (corners % 3 != 0) refuse("a mesh has " + std::to_string(corners) + " corners, which make no whole triangles");
+    if (at != none) check_indices(entry("accessors", at), corners, vertices);
+  }
+
+  void check_indices(const Json& accessor, std::uint64_t count, std::uint64_t vertices) const {
+    constexpr std::uint64_t bytes = 5121, shorts = 5123, longs = 5125, none = std::numeric_limits<std::uint64_t>::max();
+    const std::uint64_t type = whole(accessor, "componentType", 0), at = whole(accessor, "bufferView", none);
+    if (at == none) return;  // compressed: the reader's own affair
+    const std::uint64_t size = type == bytes ? 1 : type == shorts ? 2 : type == longs ? 4 : 0;
+    if (size == 0) refuse("its faces are not numbered by whole numbers");
+    const Json& view = entry("bufferViews", at);
+    const std::uint64_t begin = whole(view, "byteOffset", 0), inside = whole(accessor, "byteOffset", 0);
+    if (begin > buffer_.size() || inside > buffer_.size() - begin || count > (buffer_.size() - begin - inside) / size)
+      refuse("it is truncated: it has fewer bytes than its faces need");
+    for (std::uint64_t k = 0; k < count; ++k) {
+      std::uint32_t index = 0;
+      std::memcpy(&index, buffer_.data() + begin + inside + k * size, size);
+      if (index >= vertices) refuse("a face names vertex " + std::to_string(index) + " of " + std::to_string(vertices));
+    }
+  }
+
+  /// The numbers of a node's key; none if it has none.
+  static std::vector<double> numbers(const Json& node, const char* name, std::size_t count) {
+    std::vector<double> values;
+    if (!node.contains(name)) return values;
+    for (const Json& value : list(node, name))
+      if (value.is_number() && is_coordinate(value.get<double>())) values.push_back(value.get<double>());
+    if (values.size() != count || list(node, name).size() != count)
+      refuse(std::string("a node's ") + name + " needs " + std::to_string(count) + " numbers below 1e15");
+    return values;
+  }
+
+  static void check_placing(const Json& node) {
+    if (!node.is_object()) refuse("a node is no table");
+    numbers(node, "translation", 3);
+    numbers(node, "rotation", 4);
+    for (const double s : numbers(node, "scale", 3))
+      if (s == 0) refuse("a node scales by 0, which leaves no body");
+    const std::vector<double> m = numbers(node, "matrix", 16);  // column by column
+    if (m.empty()) return;
+    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
+      refuse("a node's matrix is no placing: its last row is not 0 0 0 1");
+    const double volume =
+        m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) + m[8] * (m[1] * m[6] - m[2] * m[5]);
+    if (volume == 0) refuse("a node's matrix flattens its mesh");
+  }
+
+  Json root_;
+  std::string_view buffer_;
+};
+
 }  // namespace
 
 FacesInFile check_obj(std::string& text) {
@@ -333,6 +430,10 @@ FacesInFile check_glb(const std::string& bytes) {
   if (head[4] != json || head[3] > bytes.size() - sizeof head) refuse("it does not begin with a JSON chunk");
   const std::string_view text = std::string_view(bytes).substr(sizeof head, head[3]);
   if (text.find("\"uri\"") != std::string_view::npos) refuse("it refers to other files: export it as one .glb");
+  constexpr std::size_t chunk_head = 8;
+  std::string_view rest = std::string_view(bytes).substr(sizeof head + head[3]);
+  rest.remove_prefix(std::min(chunk_head, rest.size()));
+  GlbCheck(text, rest).run();
   return {1, false};
 }
 

@@ -27,7 +27,8 @@ using Triangle = std::array<std::int32_t, 3>;
 
 constexpr std::size_t giga = std::size_t{1} << 30;
 constexpr std::size_t largest_file = 4 * giga, largest_answer = 4 * giga;
-constexpr int most_seconds = 60;
+constexpr int most_seconds = 60;                 // of a small file
+constexpr std::size_t bytes_a_second = 2 << 20;  // of a large one, on a slow and busy machine
 // assimp keeps coordinates in single precision; worse than this part of the mesh's size is refused.
 constexpr double coarsest = 1e-4;
 
@@ -195,6 +196,7 @@ void require_sound(const TriangleMesh& mesh, const fs::path& file) {
   const double size = box.sizes().maxCoeff();
   if (!(size > 0)) refuse(file, "all its vertices lie at one point: export the mesh again");
   const double farthest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  if (farthest > 1e15) refuse(file, "its coordinates go up to " + std::to_string(farthest) + " m: scale it to metres");
   if (farthest * std::numeric_limits<float>::epsilon() > coarsest * size)
     refuse(file, "its coordinates are too far from the origin for its size (" + std::to_string(farthest) +
                      " m against " + std::to_string(size) +
@@ -206,7 +208,8 @@ void require_sound(const TriangleMesh& mesh, const fs::path& file) {
 TriangleMesh read_mesh(const fs::path& file) {
   const std::string extension = extension_of(file);
   std::string bytes = bytes_of(file);
-  const ChildLimits limits{2 * giga + 100 * bytes.size(), most_seconds, largest_answer};
+  const ChildLimits limits{2 * giga + 100 * bytes.size(),
+                           most_seconds + static_cast<int>(bytes.size() / bytes_a_second), largest_answer};
   const ChildAnswer answer = run_in_child([&] { return parse(bytes, extension); }, limits);
   if (!answer.failure.empty()) refuse(file, answer.failure + ": repair the file or export it again");
   TriangleMesh mesh;

@@ -28,7 +28,7 @@ using Face = std::unique_ptr<std::remove_pointer_t<FT_Face>, decltype(&FT_Done_F
 constexpr const char* system_fonts = "/usr/share/fonts";
 
 [[noreturn]] void refuse(const Place& place, const std::string& what) {
-  throw Error(ExitCode::geometry, fmt::format("{}:{}:{}: text: {}", place.file, place.line, place.column, what));
+  throw Error(ExitCode::geometry, fmt::format("{}: text: {}", text_of(place), what));
 }
 
 // ---- one letter's outline, in the font's units --------------------------------------------------------------------
@@ -221,7 +221,7 @@ TriangleMesh extrude_text(const Scene& scene, const Shape& shape) {
     append(mesh, extrude(part, -text.depth / 2, text.depth / 2));
   }
   for (Vec3& v : mesh.vertices) v = Vec3(v.x(), -v.z(), v.y());
-  require_closed(mesh, fmt::format("{}:{}: text", shape.place.file, shape.place.line));
+  require_closed(mesh, text_of(shape.place) + ": text");
   return mesh;
 }
 

@@ -20,7 +20,18 @@ template <int Dim> Point<Dim> point_of(const std::array<double, 3>& v) {
 }
 
 std::string name_of(const Scene& scene, const Vent& vent) {
-  return fmt::format("{}:{}: vent", vent.place.file.empty() ? scene.file : vent.place.file, vent.place.line);
+  return text_of(vent.place.file.empty() ? Place{scene.file, 0, 0} : vent.place) + ": vent";
+}
+
+/// Before its layers are made: `across` is the patch's size, m² (2-D: m).
+void require_layer(const Scene& scene, const Vent& vent, double across, double spacing) {
+  constexpr double most = 1e7;  // particles of a layer
+  const double layer = across / std::pow(spacing, scene.dimensions - 1);
+  if (layer > most)
+    throw Error(ExitCode::usage,
+                fmt::format("{}: a layer of it would be {:.3g} particles; make it smaller (m) or the spacing of {:.3g} "
+                            "m larger",
+                            name_of(scene, vent), layer, spacing));
 }
 
 /// The lattice points of the plane that fall on the patch, seen along its normal.
@@ -62,6 +73,7 @@ VentPatch<3> patch_of_mesh(const Scene& scene, const Vent& vent, double spacing)
     throw Error(ExitCode::geometry, name_of(scene, vent) +
                                         ".mesh: the patch is not flat, so it has no one direction "
                                         "to let fluid in; cut it into flatter patches");
+  require_layer(scene, vent, area / 2, spacing);
   patch.centre /= area;
   patch.normal.normalize();
   patch.offsets = offsets_on(mesh, patch, spacing);
@@ -75,6 +87,7 @@ template <int Dim> VentPatch<Dim> patch_of(const Scene& scene, const Vent& vent,
   } else {
     patch.centre = point_of<Dim>(vent.centre);
     patch.normal = point_of<Dim>(vent.normal).normalized();
+    require_layer(scene, vent, Dim == 2 ? 2 * vent.radius : M_PI * vent.radius * vent.radius, spacing);
     patch.offsets = disc_offsets<Dim>(patch.normal, vent.radius, spacing);
   }
   patch.table = vent.table;
@@ -102,6 +115,33 @@ void require_no_support(const Scene& scene, const Vent& vent, const VentPatch<Di
                               name_of(scene, vent), support));
 }
 
+/// Two vents that let fluid in at one place would put particles on particles.
+template <int Dim> void require_apart(const Scene& scene, const Vents<Dim>& vents, double spacing) {
+  const auto overlap = [&](const VentPatch<Dim>& a, const VentPatch<Dim>& b) {
+    const auto touch = [&](const Point<Dim>& x) {
+      return std::any_of(b.offsets.begin(), b.offsets.end(),
+                         [&](const Point<Dim>& y) { return (x - b.centre - y).norm() < spacing / 2; });
+    };
+    return std::any_of(a.offsets.begin(), a.offsets.end(),
+                       [&](const Point<Dim>& offset) { return touch(a.centre + offset); });
+  };
+  const auto reach = [](const VentPatch<Dim>& patch) {
+    double r = 0;
+    for (const Point<Dim>& offset : patch.offsets) r = std::max(r, offset.norm());
+    return r;
+  };
+  for (std::size_t k = 0; k < vents.count(); ++k)
+    for (std::size_t n = 0; n < k; ++n) {
+      const VentPatch<Dim>&a = vents.patch(n), &b = vents.patch(k);
+      if ((a.centre - b.centre).norm() > reach(a) + reach(b) + spacing || !overlap(a, b)) continue;
+      throw Error(
+          ExitCode::geometry,
+          fmt::format("{}.{}: lets fluid in where vent.{} does; leave one of them out, move them apart, or give "
+                      "one vent a table of times and rates",
+                      name_of(scene, scene.vents[k]), k, n));
+    }
+}
+
 }  // namespace
 
 template <int Dim> Vents<Dim> build_vents(const Scene& scene, const Start& start, double support) {
@@ -118,6 +158,7 @@ void describe_vents(const Scene& scene, Start& start) {
 
 template <int Dim> void require_open_vents(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
   const Vents<Dim> vents = build_vents<Dim>(scene, start, start.spacing);
+  require_apart(scene, vents, start.spacing);
   for (std::size_t k = 0; k < vents.count(); ++k) {
     const VentPatch<Dim>& patch = vents.patch(k);
     if (scene.numerics.wall_support)
