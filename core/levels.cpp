@@ -91,13 +91,15 @@ template <int Dim, class Real> class Stages {
   using Columns = std::array<Real*, Dim>;
 
  public:
-  Stages(State<Dim, Real>& s, int count)
+  /// For a step of so many times the viscous limit.
+  Stages(State<Dim, Real>& s, double limits)
       : s_(s),
         p_(s.particles),
         leap_frog_(s.features.integrator == IntegratorKind::leap_frog),
-        count_(count),
+        count_(stages_for(limits)),
         time_(kick_time(s)),
-        weight_(2 / (count * (count + 1.0))),
+        weight_(2 / (count_ * (count_ + 1.0))),
+        held_(static_cast<Real>(1 / (1 + fastest_damping * limits))),
         force_(StressForce<Dim, Real>(true, s.parameters.eos.rest_density)) {}
 
   void take() {
@@ -154,29 +156,48 @@ template <int Dim, class Real> class Stages {
     std::swap(change_, earlier_);
   }
 
-  /// Those of a stage that ends at a share of the time. A vent moves what is in it at its own speed.
+  /// Those of a stage that ends at a share of the time.
   void set_velocities(double share) const {
     const Wide time(static_cast<Real>(share * time_));
     for_each_cluster([&](std::size_t slot) {
+      const Wide moving = lanes([&](std::size_t k) { return is_driven(k) || is_stuck(k) ? Real(0) : Real(1); }, slot);
       for (int d = 0; d < Dim; ++d) {
-        const Wide start = load<cluster_size>(start_[d] + slot);
-        const Wide v =
-            start + time * load<cluster_size>(acceleration_[d] + slot) + load<cluster_size>(change_[d] + slot);
-        store(v, velocity_[d] + slot);
-        for (int n = 0; inlet_ && n < cluster_size; ++n)
-          if (inlet_[slot + n] >= 0) velocity_[d][slot + n] = lane(start, n);
+        const Wide kick = time * load<cluster_size>(acceleration_[d] + slot) + load<cluster_size>(change_[d] + slot);
+        store(load<cluster_size>(start_[d] + slot) + moving * kick, velocity_[d] + slot);
       }
     });
   }
 
-  /// The mean acceleration; the velocity is again that of before. Nothing stays behind: whether a cluster takes part
-  /// to no effect depends on the list's age.
+  /// A vent moves what is in it at its own speed.
+  bool is_driven(std::size_t slot) const { return inlet_ && inlet_[slot] >= 0; }
+
+  /// A wall has stopped the particle in the last step, and holds it throughout this one: else the fluid beside it would
+  /// carry it along between two contacts, and feel the less of the wall the longer the step.
+  bool is_stuck(std::size_t slot) const {
+    if (!s_.features.contact || s_.clock.step == 0) return false;
+    if (!s_.free_way.within(FreeWay::part_of(FreeWay::longest), slot)) return false;  // at rest elsewhere
+    return std::all_of(start_.begin(), start_.end(), [slot](const Real* v) { return v[slot] == 0; });
+  }
+  bool is_changed(std::size_t slot) const {
+    return std::any_of(change_.begin(), change_.end(), [slot](const Real* v) { return v[slot] != 0; });
+  }
+
+  template <class F> static Wide lanes(const F& f, std::size_t slot) {
+    Wide all;
+    for (int n = 0; n < cluster_size; ++n) set_lane(all, n, f(slot + n));
+    return all;
+  }
+
+  /// The mean acceleration; the velocity is again that of before. What was held has felt forces that its own motion
+  /// would have damped: it gets what is left of them. Nothing stays behind: whether a cluster takes part to no effect
+  /// depends on the list's age.
   void finish() const {
     const Wide rate(static_cast<Real>(1 / time_));
     for_each_cluster([&](std::size_t slot) {
+      const Wide share = lanes([&](std::size_t k) { return is_stuck(k) && is_changed(k) ? held_ : Real(1); }, slot);
       for (int d = 0; d < Dim; ++d) {
         Real* const a = acceleration_[d] + slot;
-        store(load<cluster_size>(a) + rate * load<cluster_size>(change_[d] + slot), a);
+        store(share * (load<cluster_size>(a) + rate * load<cluster_size>(change_[d] + slot)), a);
         store(load<cluster_size>(start_[d] + slot), velocity_[d] + slot);
         for (Real* column : {at_start_[d], change_[d], earlier_[d]}) store(Wide(0), column + slot);
         if (!leap_frog_) store(Wide(0), start_[d] + slot);
@@ -210,6 +231,7 @@ template <int Dim, class Real> class Stages {
   int count_;
   double time_;    // s
   double weight_;  // w
+  Real held_;      // what is left of the forces on particles that walls hold
   Always<StressForce<Dim, Real>> force_;
   Columns velocity_ = p_[velocity].c, acceleration_ = p_[acceleration].c, at_start_ = p_[stiff_acceleration].c;
   Columns start_ = leap_frog_ ? p_[half_velocity].c : p_[start_velocity].c;
@@ -238,7 +260,8 @@ template <int Dim, class Real> double largest_acceleration2(const State<Dim, Rea
 
 template <int Dim, class Real> void take_stages(State<Dim, Real>& s) {
   const double stable = viscous_limit(s, s.extremes.kinematic_viscosity);
-  s.levels.stages = s.clock.dt <= stable ? 0 : stages_for(kick_time(s) / stable);
+  const double limits = kick_time(s) / stable;
+  s.levels.stages = s.clock.dt <= stable ? 0 : stages_for(limits);
   if (s.levels.stages == 0) {
     s.levels.particles = {static_cast<std::int64_t>(s.particles.count())};
     return;
@@ -246,7 +269,7 @@ template <int Dim, class Real> void take_stages(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("stages");
   find_levels(s);
   list_stiff_pairs(s);
-  Stages<Dim, Real>(s, s.levels.stages).take();
+  Stages<Dim, Real>(s, limits).take();
   s.extremes.acceleration2 = largest_acceleration2(s);
 }
 

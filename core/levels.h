@@ -4,15 +4,14 @@
 // forces of pairs with a cluster above level 0, in stages within it: both particles of a pair across levels feel it at
 // the finer one, as one impulse, so that momentum is conserved to round-off.
 //
-// The stages are those of the Runge-Kutta-Legendre method of first order (Meyer, Balsara and Aslam 2012, MNRAS 422,
-// 2102, eqs 6-7), with the viscosities, densities and places of the step's start, so that the forces are linear in the
+// The stages are those of the Runge-Kutta-Legendre method of first order (RKL1: Meyer, Balsara and Aslam 2012, MNRAS
+// 422, 2102), with the viscosities, densities and places of the step's start, so that the forces are linear in the
 // velocities Y: with τ the time for which the accelerations a act,
 //   Y_j = μ_j Y_{j−1} + (1 − μ_j) Y_{j−2} + μ_j w τ a(Y_{j−1}), μ_j = (2j − 1)/j, w = 2/(s² + s).
-// s stages are stable for τ up to (s² + s)/λ, λ the fastest damping, where equal steps of Euler's method would have to
-// be 2/λ at most: so they are as many as √(2^level), not 2^level. The integrator gets
-// the mean acceleration (Y_s − Y_0)/τ and knows nothing of them. What is summed is how the stages differ from the
-// acceleration a at the step's start, e_j = Y_j − Y_0 − c_j τ a, so that a particle without such pairs keeps that bit
-// for bit.
+// s of them are stable for τ up to (s² + s)/λ, λ the fastest damping, s steps of Euler's method for 2 s/λ: so they are
+// as many as √(2^level), not 2^level. The integrator gets the mean acceleration (Y_s − Y_0)/τ and knows nothing of
+// them. What is summed is how the stages differ from the acceleration a at the step's start, e_j = Y_j − Y_0 − c_j τ a,
+// so that a particle without such pairs keeps that bit for bit.
 #pragma once
 
 #include <array>
