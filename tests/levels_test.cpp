@@ -121,6 +121,20 @@ TYPED_TEST(LevelsOf, BoundsTheStepByTheirNumber) {
   EXPECT_GT(s.levels.particles[2], 0);
 }
 
+TYPED_TEST(LevelsOf, AreNotWhereTheyWouldNotPay) {
+  MOLTEN_FLAVOUR;
+  Scene scene = crusted_scene(Dim);
+  scene.fluid.rheology.jump_number = {0, 6};  // the sound limit is twice the viscous one
+  const Start start = blob(scene);
+  auto s = state_of<Dim, Real>(scene, start);
+  for (int k = 0; k < 3; ++k) {
+    step(s);
+    EXPECT_EQ(s.clock.limit, Limit::viscous);
+    EXPECT_EQ(s.clock.dt, viscous_limit(s, s.extremes.kinematic_viscosity));
+    EXPECT_EQ(s.levels.stages, 0);
+  }
+}
+
 TYPED_TEST(LevelsOf, ConserveMomentumAndHeat) {
   MOLTEN_FLAVOUR;
   for (const auto integrator : {IntegratorKind::leap_frog, IntegratorKind::symplectic_euler}) {
