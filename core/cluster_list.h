@@ -46,6 +46,18 @@ struct ClusterChunk {
   bool operator==(const ClusterChunk&) const = default;
 };
 
+/// Some clusters, each with those of its neighbours that matter to it: parts of a chunk's lists.
+struct PartialChunk {
+  struct Row {
+    std::uint32_t cluster, first_entry, end_entry;
+  };
+  std::vector<Row> rows;
+  std::vector<ListEntry> entries;
+
+  void clear() { rows.clear(), entries.clear(); }
+  std::size_t bytes() const { return rows.capacity() * sizeof(Row) + entries.capacity() * sizeof(ListEntry); }
+};
+
 /// The offsets between neighbouring cells' origins, numbered: across by columns, along by segments.
 template <int Dim> struct ShiftTable {
   std::array<int, Dim> reach{};                // cells to each side

@@ -75,6 +75,19 @@ void require_sensible_sleep(const Scene& scene) {
              "a wall in motion keeps the fluid beside it awake; leave it out, or numerics.sleep");
 }
 
+void require_sensible_levels(const Scene& scene) {
+  const Numerics& n = scene.numerics;
+  if (n.time_step_levels == 0) return;
+  if (scene.fluid.rheology.constant())
+    refuse(scene, "numerics.time_step_levels",
+           "tells regions apart by their viscosity, and here it is the same everywhere; leave it out");
+  const bool two_step = n.integrator == IntegratorKind::leap_frog || n.integrator == IntegratorKind::symplectic_euler;
+  if (!two_step || n.gradient_correction || n.wall_support || n.internal_energy || n.sleep || n.boundary_particles)
+    refuse(scene, "numerics.time_step_levels",
+           "goes with the integrators leap_frog and symplectic_euler, without gradient_correction, wall_support, "
+           "internal_energy, sleep or boundary_particles; leave one of the two out");
+}
+
 void require_sensible_walls(const Scene& scene) {
   const Numerics& n = scene.numerics;
   if (!n.wall_support) return;
@@ -167,6 +180,7 @@ Features features_of(const Scene& scene) {
   require_sensible_density(scene);
   require_sensible_numerics(scene);
   require_sensible_sleep(scene);
+  require_sensible_levels(scene);
   require_sensible_walls(scene);
   require_sensible_integrator(scene);
   require_sensible_boundary_particles(scene);
@@ -192,6 +206,7 @@ Features features_of(const Scene& scene) {
   f.wall_support = f.contact && scene.numerics.wall_support;
   f.density_diffusion = scene.numerics.density_diffusion > 0;
   f.sleep = scene.numerics.sleep.has_value();
+  f.levels = scene.numerics.time_step_levels > 0;
   if (f.contact && scene.numerics.boundary_particles) {
     f.boundary_particles = scene.numerics.boundary_particles->kind == BoundaryParticles::Kind::dynamic;
     f.repulsion = !f.boundary_particles;
@@ -234,6 +249,8 @@ FieldSet Features::columns() const {
   if (sleep) s |= field_set(FieldList<RestTime>{});
   if (sleep && heat) s |= field_set(FieldList<HeatRestTime>{});
   if (sleep && heat && stress) s |= field_set(FieldList<RestTemperature>{});
+  if (levels) s |= field_set(FieldList<StiffAcceleration, StageChange, EarlierChange>{});
+  if (levels && integrator == IntegratorKind::symplectic_euler) s |= field_set(FieldList<StartVelocity>{});
   if (vents) s |= field_set(FieldList<Inlet>{});
   if (boundary_particles) s |= field_set(FieldList<Held>{});
   return s;
@@ -247,6 +264,7 @@ std::vector<std::string> Features::passes() const {
   if (sleep) p.push_back("wake and rest");
   if (stress) p.push_back("viscosity");
   p.push_back(heat ? "forces and heat" : "forces");
+  if (levels) p.push_back("stages");
   p.push_back(contact ? "integrate and collide" : "integrate");
   return p;
 }
@@ -277,7 +295,8 @@ std::vector<std::string> Features::names() const {
                                               {vents, "vents"},
                                               {outflow, "outflow"},
                                               {density_diffusion, "density-diffusion"},
-                                              {sleep, "sleep"}};
+                                              {sleep, "sleep"},
+                                              {levels, "time-step-levels"}};
   std::vector<std::string> n;
   for (const auto& [on, name] : all)
     if (on) n.emplace_back(name);

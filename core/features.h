@@ -37,7 +37,8 @@ struct Features {
   bool vents = false;               // fluid enters
   bool outflow = false;             // fluid is removed at planes
   bool density_diffusion = false;
-  bool sleep = false;  // what is at rest
+  bool sleep = false;   // what is at rest
+  bool levels = false;  // time steps by region
   IntegratorKind integrator = IntegratorKind::leap_frog;
 
   /// No forces but pressure and artificial viscosity, no heat, no XSPH: the shortest instantiation of the forces pass

@@ -93,6 +93,12 @@ MOLTEN_FIELD(StrainRate, StepTensor, strain_rate, "1/s", "rate of strain, grad v
 MOLTEN_FIELD(Vorticity, StepVector, vorticity, "1/s", "curl of the velocity; 2-D: the first component");
 MOLTEN_FIELD(Thinning, StepScalar, thinning, "1", "-d ln viscosity / d ln strain rate, halved");
 
+MOLTEN_FIELD(StiffAcceleration, StepVector, stiff_acceleration, "m/s2",
+             "acceleration by viscous forces of stiff clusters, before the first stage");
+MOLTEN_FIELD(StartVelocity, StepVector, start_velocity, "m/s", "velocity before the first stage; symplectic Euler");
+MOLTEN_FIELD(StageChange, StepVector, stage_change, "m/s", "what the stages so far have made of the velocity");
+MOLTEN_FIELD(EarlierChange, StepVector, earlier_change, "m/s", "the same, one stage earlier");
+
 // Sums that a pass uses up itself; never a column.
 MOLTEN_FIELD(Moment, StepTensor, moment, "kg/m3", "sum of m_j grad W times x_ij, for the correction");
 MOLTEN_FIELD(CrowdingGradient, StepVector, crowding_gradient, "kg/m4", "sum of m_j grad W, for shifting");
@@ -113,7 +119,8 @@ using AllFields =
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
-              RestTime, HeatRestTime, RestTemperature, Inlet, Held, StrainRate, Vorticity, Thinning, CouplingRate>;
+              RestTime, HeatRestTime, RestTemperature, Inlet, Held, StrainRate, Vorticity, Thinning, CouplingRate,
+              StiffAcceleration, StartVelocity, StageChange, EarlierChange>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

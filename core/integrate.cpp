@@ -21,12 +21,6 @@ namespace molten {
 
 namespace {
 
-/// For how long (s) the accelerations act on the velocities.
-template <int Dim, class Real> double kick_time(const State<Dim, Real>& s) {
-  const double dt = s.clock.dt;
-  return s.features.integrator == IntegratorKind::leap_frog ? (s.clock.previous_dt + dt) / 2 : dt;
-}
-
 /// By leap-frog or symplectic Euler. Four particles at once: the pass is bound by memory, and one by one by
 /// instructions. What is padding has no rates, so it stays at zero.
 template <bool leap_frog, int Dim, class Real> class Integrator {
@@ -246,6 +240,11 @@ template <bool leap_frog, int Dim, class Real> Moved<Dim> move_all(State<Dim, Re
 
 }  // namespace
 
+template <int Dim, class Real> double kick_time(const State<Dim, Real>& s) {
+  const double dt = s.clock.dt;
+  return s.features.integrator == IntegratorKind::leap_frog ? (s.clock.previous_dt + dt) / 2 : dt;
+}
+
 template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
   const auto scope = s.timer.scope(s.features.contact ? "integrate and collide" : "integrate");
   const IntegratorKind kind = s.features.integrator;
@@ -271,6 +270,7 @@ template <int Dim, class Real> void prepare(State<Dim, Real>& s, std::size_t fir
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)                     \
+  template double kick_time(const State<Dim, Real>&);     \
   template void integrate_and_collide(State<Dim, Real>&); \
   template void prepare(State<Dim, Real>&, std::size_t);
 MOLTEN_INSTANTIATE(2, float)

@@ -52,6 +52,10 @@ template <int Dim, class Real> class Neighbours {
   template <class F> void for_each_list(const ClusterChunk& chunk, F&& f) const {
     list_.for_each(chunk, order_, list_.shell(displacement_), std::forward<F>(f));
   }
+  template <class F> void for_each_list(const PartialChunk& chunk, F&& f) const {
+    for (const PartialChunk::Row& row : chunk.rows)
+      f(row.cluster, std::span(chunk.entries).subspan(row.first_entry, row.end_entry - row.first_entry));
+  }
   const ShiftTable<Dim>& shifts() const { return list_.shifts(); }
   const Cell<Dim>& cell(std::size_t cluster) const { return order_.cells[cluster]; }
   std::size_t clusters() const { return order_.clusters(); }

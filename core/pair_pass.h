@@ -146,12 +146,12 @@ template <int N, int Dim, class Real, class KernelType, class Finish, class... T
       for (int d = 0; d < Dim; ++d) shifts_.push_back(static_cast<Real>(shift[d]));
   }
 
-  void run(std::span<const ClusterChunk> chunks) const {
+  template <class Chunk> void run(std::span<const Chunk> chunks) const {
     for_each_piece(chunks.size(), [&](std::size_t k) { run_chunk(chunks[k], k); });
   }
 
  private:
-  void run_chunk(const ClusterChunk& chunk, std::size_t number) const {
+  template <class Chunk> void run_chunk(const Chunk& chunk, std::size_t number) const {
     auto finish = finish_.for_chunk(number);
     neighbours_.for_each_list(chunk, [&](std::uint32_t c, std::span<const ListEntry> list) {
       for (int i = 0; i < cluster_size; i += I) sum_up(std::size_t{c} * cluster_size + i, list, finish);
@@ -276,10 +276,10 @@ template <class... Terms>
 concept Fusable = disjoint < typename UnionOf<typename Terms::Reads...>::type,
 typename UnionOf<typename Terms::Sums...>::type > ;
 
-/// Runs fused terms over the listed pairs of some chunks on N lanes.
-template <int N, int Dim, class Real, class KernelType, class Finish, class... Terms>
+/// Runs fused terms over the listed pairs of some chunks, whole or partial, on N lanes.
+template <int N, class Chunk, int Dim, class Real, class KernelType, class Finish, class... Terms>
 requires Fusable<Terms...>
-void pair_pass_over(std::span<const ClusterChunk> chunks, const Neighbours<Dim, Real>& neighbours,
+void pair_pass_over(std::span<const Chunk> chunks, const Neighbours<Dim, Real>& neighbours,
                     const Particles<Dim, Real>& particles, const KernelType& kernel, const Finish& finish,
                     const Terms&... terms) {
   PairPass<N, Dim, Real, KernelType, Finish, Terms...>(neighbours, particles, kernel, finish, terms...).run(chunks);

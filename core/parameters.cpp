@@ -226,6 +226,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.courant_force = n.courant_force;
   p.courant_conduction = n.courant_conduction;
   p.fixed_dt = n.fixed_dt;
+  p.time_step_levels = static_cast<int>(n.time_step_levels);
   p.sort_each_step = n.resort == Resort::each_step;
   if (n.sleep) p.rest = rest_bounds(scene, p, Temperatures(scene, start));
   p.domain = domain_of<Dim>(scene, extent, start.spacing);

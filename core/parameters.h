@@ -45,6 +45,7 @@ template <int Dim> struct Parameters {
   DensityFilter density_filter;
   double courant_sound = 0, courant_viscous = 0, courant_force = 0, courant_conduction = 0;
   std::optional<double> fixed_dt;  // s
+  int time_step_levels = 0;        // powers of two by which a step may exceed the smallest stable viscous one
   bool sort_each_step = false;
   std::optional<RestBounds> rest;  // within which particles fall asleep
   Domain<Dim> domain;

@@ -26,7 +26,7 @@ template <int Dim, class Real> auto viscosity_finish(State<Dim, Real>& s) {
     const double value = p.viscosity_at(magnitude, T ? T[slot] : 0.0);
     const Real density = rho0 * (1 + delta[slot]);
     eta[slot] = static_cast<Real>(value);
-    stress_of.set(slot, (static_cast<Real>(value) / (density * density)) * strain);
+    stress_of.set(slot, stress_term(static_cast<Real>(value), density, strain));
   }};
 }
 

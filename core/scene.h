@@ -266,6 +266,7 @@ struct Numerics {
   bool wall_support = false;     // walls make up for what they cut off a particle's support
   std::optional<BoundaryParticles> boundary_particles;
   std::optional<double> fixed_dt;  // s; overrides the adaptive step
+  long long time_step_levels = 0;  // powers of two by which a step may exceed the smallest stable viscous one
   std::optional<SleepBounds> sleep;
 };
 

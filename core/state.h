@@ -12,6 +12,7 @@
 #include "core/boundary/wall_support.h"
 #include "core/features.h"
 #include "core/free_way.h"
+#include "core/levels.h"
 #include "core/neighbours.h"
 #include "core/parameters.h"
 #include "core/particles.h"
@@ -69,13 +70,14 @@ template <int Dim, class Real> struct State {
   Extremes extremes;
   Timer timer;
   Sleep sleep{};
+  Levels levels{};                 // empty without the feature
   Repulsion<Dim> repulsion{};      // empty without the feature
   std::size_t boundary_count = 0;  // of the particles, those that are walls
 
   void archive(Archive& a);
   std::size_t bytes() const {
     return particles.bytes() + neighbours.bytes() + free_way.bytes() + wall_support.bytes() + sleep.still.capacity() +
-           sleep.cold.capacity() + repulsion.bytes();
+           sleep.cold.capacity() + levels.bytes() + repulsion.bytes();
   }
 };
 

@@ -47,6 +47,16 @@ template <int Dim, class Real> void require_sane(const State<Dim, Real>& s);
 /// The largest stable time step and what limits it (physics: [P] 6-17 with a coefficient for each limit).
 template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s);
 
+/// The largest time step (s) of forces of a kinematic viscosity (m²/s).
+template <int Dim, class Real> double viscous_limit(const State<Dim, Real>& s, double kinematic_viscosity);
+
+/// Where clusters are too stiff for the step: the mean of the accelerations over it, their viscous forces being taken
+/// in stages (levels.h). Only where the scene asks for it.
+template <int Dim, class Real> void take_stages(State<Dim, Real>& s);
+
+/// For how long (s) the accelerations act on the velocities.
+template <int Dim, class Real> double kick_time(const State<Dim, Real>& s);
+
 /// Moves the particles and bodies, bouncing the particles off walls ([P] alg. 3, lines 12-16); prepares what the next
 /// passes read.
 template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s);

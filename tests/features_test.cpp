@@ -161,6 +161,22 @@ TEST(Features, SleepAddsItsColumnAndItsPass) {
   EXPECT_EQ(difference(columns_of(features_of(scene)), awake), (Names{"rest_time", "heat_rest_time"}));
 }
 
+TEST(Features, LevelsAddTheirColumnsAndTheirPass) {
+  Scene scene = minimal();
+  scene.fluid.rheology.model = Rheology::Model::smd;
+  for (const auto integrator : {IntegratorKind::leap_frog, IntegratorKind::symplectic_euler}) {
+    scene.numerics.integrator = integrator;
+    scene.numerics.time_step_levels = 0;
+    const Features without = features_of(scene);
+    scene.numerics.time_step_levels = 3;
+    const Features with = features_of(scene);
+    Names columns{"stiff_acceleration", "stage_change", "earlier_change"};
+    if (integrator == IntegratorKind::symplectic_euler) columns.insert(columns.begin() + 1, "start_velocity");
+    EXPECT_EQ(difference(columns_of(with), columns_of(without)), columns);
+    EXPECT_EQ(difference(with.passes(), without.passes()), (Names{"stages"}));
+  }
+}
+
 TEST(Features, WallsAddTheirPass) {
   expect_adds([](Scene& s) { s.boundaries.emplace_back(); }, {{}, {"integrate"}, {"integrate and collide"}});
 }
@@ -272,6 +288,24 @@ TEST(Features, RefusesAPairwiseStressWithoutWhatItNeeds) {
   EXPECT_TRUE(features_of(replica).pairwise_stress);
   replica.numerics.tensile_correction = true;
   EXPECT_FALSE(features_of(replica).pairwise_stress);
+}
+
+TEST(Features, RefusesLevelsWithWhatTheyDoNotGoWith) {
+  const auto levels = [](Scene& s) {
+    s.fluid.rheology.model = Rheology::Model::smd;
+    s.numerics.time_step_levels = 3;
+  };
+  EXPECT_EQ(refusal(levels), "");
+  expect_refused([](Scene& s) { s.numerics.time_step_levels = 3; }, "numerics.time_step_levels: tells regions apart");
+  const auto refused = [&](auto&& edit) {
+    expect_refused([&](Scene& s) { levels(s), edit(s.numerics); }, "numerics.time_step_levels: goes with the integ");
+  };
+  refused([](Numerics& n) { n.integrator = IntegratorKind::midpoint; });
+  refused([](Numerics& n) { n.gradient_correction = true; });
+  refused([](Numerics& n) { n.wall_support = true; });
+  refused([](Numerics& n) { n.internal_energy = true; });
+  refused([](Numerics& n) { n.sleep.emplace(); });
+  refused([](Numerics& n) { n.boundary_particles.emplace(); });
 }
 
 TEST(Features, RefusesADensityBySummationWithWhatActsOnItsRate) {

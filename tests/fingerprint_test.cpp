@@ -164,6 +164,7 @@ const std::vector<Change> changes = {
     {"numerics.boundary_particles={ kind = \"repulsive\" }", {ball}},
     {support},
     {"numerics.fixed_dt=1e-5"},
+    {"numerics.time_step_levels=3", {smd}},
     {"numerics.sleep={}"},
     {"numerics.sleep.speed=0.1", {"numerics.sleep={}"}},
     {"numerics.sleep.density_rate=0.1", {"numerics.sleep={}"}},

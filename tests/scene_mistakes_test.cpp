@@ -81,6 +81,7 @@ const std::vector<Mistake> mistakes = {
     {"diffusivity = 1e-4", "diffusivity = -1e-4", "fluid.heat.diffusivity"},
     {"courant = { sound = 0.15 }", "courant = { sound = 0 }", "numerics.courant.sound: 0"},
     {"xsph = { epsilon = 0.4 }", "xsph = { epsilon = 2 }", "numerics.xsph.epsilon: 2"},
+    {"courant = { sound = 0.15 }", "time_step_levels = 17", "numerics.time_step_levels: 17"},
     {"courant = { sound = 0.15 }", "sleep = { speed = 0 }", "numerics.sleep.speed: 0 is out of range"},
     {"courant = { sound = 0.15 }", "sleep = true", "sleep: is true or false; give a table: speed"},
     {"courant = { sound = 0.15 }", "sleep = { velocity = 1 }", "velocity"},

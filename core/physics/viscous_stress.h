@@ -36,6 +36,12 @@ struct CorrectedStrainRateTerm {
   }
 };
 
+/// Stress / density², from the viscosity (Pa s), the density (kg/m³) and the rate of strain.
+template <int Dim, class Real>
+SymTensor<Dim, Real> stress_term(Real viscosity, Real density, const SymTensor<Dim, Real>& strain) {
+  return (viscosity / (density * density)) * strain;
+}
+
 /// The sum of stresses alone does not feel velocities that alternate from particle to particle: their rate of strain is
 /// zero. So what a pair's approach has beyond the particles' own rates of strain, v_ij·x − ¼ x·(D_i + D_j)·x, of third
 /// order in r where the velocity is smooth, is damped in Monaghan's form with the harmonic mean viscosity η̄:

@@ -104,12 +104,12 @@ void add_one(Hash& hash, const Numerics& n) {
                artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, stress_form,
                internal_energy, xsph, stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter,
                gradient_correction, shifting, courant_sound, courant_viscous, courant_force, courant_conduction,
-               density_diffusion, wall_support, boundary_particles, fixed_dt, sleep] = n;
+               density_diffusion, wall_support, boundary_particles, fixed_dt, time_step_levels, sleep] = n;
   add(hash, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
       artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, stress_form, internal_energy,
       xsph, stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction,
       shifting, courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion, wall_support,
-      boundary_particles, fixed_dt, sleep);
+      boundary_particles, fixed_dt, time_step_levels, sleep);
 }
 
 void add_one(Hash& hash, const Box& b) {

@@ -3,8 +3,10 @@
 #include <omp.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "core/error.h"
 #include "io/geometry/text.h"
@@ -73,6 +75,19 @@ std::string cpu_name() {
   return "unknown";
 }
 
+namespace {
+
+/// Of the particle-steps, by level up to the last that was needed.
+std::vector<double> shares(const std::vector<double>& level_steps) {
+  const double all = std::max(std::accumulate(level_steps.begin(), level_steps.end(), 0.0), 1.0);
+  std::vector<double> of;
+  for (const double steps : level_steps) of.push_back(steps / all);
+  while (of.size() > 1 && of.back() == 0) of.pop_back();
+  return of;
+}
+
+}  // namespace
+
 void write_summary(const std::filesystem::path& folder, const Summary& s) {
   const double per_second = s.wall_time_s > 0 ? 1 / s.wall_time_s : 0;
   nlohmann::ordered_json json = {{"status", s.status},
@@ -92,6 +107,10 @@ void write_summary(const std::filesystem::path& folder, const Summary& s) {
                                  {"passes", s.passes}};
   if (s.boundary_particles) json["boundary_particles"] = *s.boundary_particles;
   if (s.energy_taken_by_sleep) json["energy_taken_by_sleep_J"] = *s.energy_taken_by_sleep;
+  if (!s.level_steps.empty()) {
+    json["share_by_level"] = shares(s.level_steps);
+    json["stages_a_step"] = s.stages / static_cast<double>(std::max<std::int64_t>(s.steps, 1));
+  }
   write_json(folder / "summary.json", json);
 }
 

@@ -18,6 +18,8 @@ struct Summary {
   std::int64_t particles = 0, particles_asleep = 0, particles_lost = 0, steps = 0;
   std::optional<std::int64_t> boundary_particles;  // of the particles, those that are walls; or those that push
   std::optional<double> energy_taken_by_sleep;     // J
+  std::vector<double> level_steps;                 // particle-steps by level; empty without time_step_levels
+  double stages = 0;                               // of all steps
   double simulated_time_s = 0;
   double wall_time_s = 0;                                  // of the stepping loop, output not counted
   double particle_steps = 0, asleep_steps = 0, pairs = 0;  // particle_steps counts those asleep, too

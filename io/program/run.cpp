@@ -36,6 +36,8 @@ struct Ledger {
   std::int64_t frame_number = 0;  // of the next frame's file
   std::int64_t rows = 0;          // of series.csv
   double initial_energy = 0, stepping_seconds = 0, particle_steps = 0, asleep_steps = 0, pairs_at_start = 0;
+  std::vector<double> level_steps;  // particle-steps by level; empty without levels
+  double stages = 0;                // of all steps
 
   void archive(Archive& a) {
     a.value("run/frame_number", frame_number);
@@ -45,6 +47,7 @@ struct Ledger {
     a.value("run/particle_steps", particle_steps);
     a.value("run/asleep_steps", asleep_steps);
     a.value("run/pairs_at_start", pairs_at_start);
+    if (!level_steps.empty()) a.vector("run/level_steps", level_steps), a.value("run/stages", stages);
   }
 };
 
@@ -52,7 +55,9 @@ struct Ledger {
 template <int Dim, class Real> class Runner {
  public:
   Runner(const Scene& scene, const std::filesystem::path& folder, State<Dim, Real> state, std::string fingerprint)
-      : scene_(scene), folder_(folder), state_(std::move(state)), fingerprint_(std::move(fingerprint)) {}
+      : scene_(scene), folder_(folder), state_(std::move(state)), fingerprint_(std::move(fingerprint)) {
+    if (state_.features.levels) ledger_.level_steps.resize(state_.levels.particles.size());
+  }
 
   void restore(const std::filesystem::path& checkpoint) {
     read_checkpoint(checkpoint, [this](Archive& a) { archive(a); });
@@ -126,6 +131,9 @@ template <int Dim, class Real> class Runner {
     ledger_.stepping_seconds += seconds_since(start);
     ledger_.particle_steps += static_cast<double>(state_.particles.count());
     ledger_.asleep_steps += static_cast<double>(state_.sleep.asleep);
+    for (std::size_t k = 0; k < ledger_.level_steps.size(); ++k)
+      ledger_.level_steps[k] += static_cast<double>(state_.levels.particles[k]);
+    ledger_.stages += state_.levels.stages;
     write_due();
     if (scene_.output.checkpoint_every > 0 && seconds_since(last_checkpoint_) > scene_.output.checkpoint_every)
       checkpoint();
@@ -197,6 +205,8 @@ template <int Dim, class Real> class Runner {
     s.wall_time_s = ledger_.stepping_seconds;
     s.particle_steps = ledger_.particle_steps;
     s.asleep_steps = ledger_.asleep_steps;
+    s.level_steps = ledger_.level_steps;
+    s.stages = ledger_.stages;
     const double pairs_a_step = (ledger_.pairs_at_start + static_cast<double>(count_pairs(state_))) / 2;
     s.pairs = pairs_a_step * static_cast<double>(state_.clock.step);
     s.threads = omp_get_max_threads();

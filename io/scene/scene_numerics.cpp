@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/levels.h"
 #include "io/scene/presets.h"
 #include "io/scene/scene_sections.h"
 
@@ -20,6 +21,7 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "xsph",
                                         "courant",
                                         "fixed_dt",
+                                        "time_step_levels",
                                         "gradient_correction",
                                         "shifting",
                                         "density",
@@ -221,6 +223,7 @@ Numerics read_numerics(const TomlReader& root, const Scene& scene) {
   read_boundary_particles(*keys, numerics);
   keys->number("density_diffusion", numerics.density_diffusion, Range{0, 1, true, ""});
   keys->number("fixed_dt", numerics.fixed_dt, Range::positive("s"));
+  keys->whole("time_step_levels", numerics.time_step_levels, 0, most_levels);
   read_sleep(*keys, numerics);
   return numerics;
 }
