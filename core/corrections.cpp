@@ -50,8 +50,10 @@ template <int Dim, class Real> auto correction_finish(State<Dim, Real>& s, doubl
           static_cast<Real>(p.density_coupling * fastest / p.smoothing_length * coupling_share(found.inner) * lacking);
     }
     Vec<Dim, double> way;
-    for (int d = 0; d < Dim; ++d) way[d] = volumes * sums[crowding_gradient][d];
-    const double wanted = p.shifting * p.smoothing_length * found.inner * fastest;
+    for (int d = 0; d < Dim; ++d) way[d] = volumes * found.inner * sums[crowding_gradient][d];
+    if constexpr (requires { sums[parting]; })
+      for (int d = 0; d < Dim; ++d) way[d] += volumes * (1 - found.inner) * sums[parting][d];
+    const double wanted = p.shifting * p.smoothing_length * fastest;
     const double most = fastest / 2 / (std::sqrt(dot(way, way)) + 1e-300);
     for (int d = 0; d < Dim; ++d) shift[d][slot] = static_cast<Real>(-std::min(wanted, most) * way[d]);
   }};
@@ -72,7 +74,7 @@ template <int Dim, class Real> void find_corrections(State<Dim, Real>& s) {
           more...);
     });
   };
-  s.features.density_coupling ? pass(Concentration{}) : pass();
+  s.features.density_coupling ? pass(Concentration{}, PartingOfClose<Real>(s.parameters.spacing)) : pass();
 }
 
 template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {

@@ -102,6 +102,7 @@ MOLTEN_FIELD(EarlierChange, StepVector, earlier_change, "m/s", "the same, one st
 // Sums that a pass uses up itself; never a column.
 MOLTEN_FIELD(Moment, StepTensor, moment, "kg/m3", "sum of m_j grad W times x_ij, for the correction");
 MOLTEN_FIELD(CrowdingGradient, StepVector, crowding_gradient, "kg/m4", "sum of m_j grad W, for shifting");
+MOLTEN_FIELD(Parting, StepVector, parting, "kg/m4", "the same of neighbours that are too near, with weights");
 MOLTEN_FIELD(KernelSum, StepScalar, kernel_sum, "kg/m3", "sum of m W, with weights");
 MOLTEN_FIELD(KernelMean, StepScalar, kernel_mean, "kg/m3", "the same times the compression");
 MOLTEN_FIELD(KernelMoment, StepVector, kernel_moment, "kg/m2", "the same sum times x_ij");

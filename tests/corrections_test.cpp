@@ -28,8 +28,8 @@ using X = std::array<double, 3>;
 using Flow = std::function<X(const X&)>;
 
 /// A free jittered block with a velocity, found corrections.
-template <int Dim, class Real> State<Dim, Real> block(const Scene& scene, const Flow& flow) {
-  auto s = state_of<Dim, Real>(scene, cube<Dim>(Dim == 2 ? 16 : 9, spacing, 0.2), spacing);
+template <int Dim, class Real> State<Dim, Real> block(const Scene& scene, const Flow& flow, double jitter = 0.2) {
+  auto s = state_of<Dim, Real>(scene, cube<Dim>(Dim == 2 ? 16 : 9, spacing, jitter), spacing);
   set_velocity(s, flow);
   find_corrections(s);
   return s;
@@ -38,6 +38,7 @@ template <int Dim, class Real> State<Dim, Real> block(const Scene& scene, const 
 template <int Dim> struct Naive {
   Eigen::Matrix<double, Dim, Dim> moment = Eigen::Matrix<double, Dim, Dim>::Zero();
   Eigen::Matrix<double, Dim, 1> crowding = Eigen::Matrix<double, Dim, 1>::Zero();
+  Eigen::Matrix<double, Dim, 1> parting = Eigen::Matrix<double, Dim, 1>::Zero();
 };
 
 template <int Dim, class Real> std::vector<Naive<Dim>> naive_sums(const State<Dim, Real>& s) {
@@ -46,6 +47,7 @@ template <int Dim, class Real> std::vector<Naive<Dim>> naive_sums(const State<Di
     const Eigen::Matrix<double, Dim, 1> x = Eigen::Map<const Eigen::Matrix<double, Dim, 1>>(p.x.data());
     all[p.i].moment -= p.mF / 1000 * x * x.transpose();
     all[p.i].crowding += p.mF / 1000 * x;
+    all[p.i].parting += p.mF / 1000 * std::max(0.0, 1 - x.squaredNorm() / std::pow(0.65 * spacing, 2)) * x;
   });
   return all;
 }
@@ -87,6 +89,19 @@ TYPED_TEST(CorrectionsOf, InvertTheMomentAndFadeTowardsTheSurface) {
   EXPECT_GT(plain, 0);
 }
 
+template <int Dim> Eigen::Matrix<double, Dim, 1> way_of(const Naive<Dim>& naive, double inner, double parting = 1) {
+  return inner * naive.crowding + parting * (1 - inner) * naive.parting;
+}
+
+/// The shift against −C U h way, at most U/2.
+template <int Dim, class Real>
+void expect_shift(const State<Dim, Real>& s, std::size_t k, double fastest, const Eigen::Matrix<double, Dim, 1>& way) {
+  const double factor = -3 * fastest * s.parameters.smoothing_length;
+  const double less = std::min(1.0, fastest / 2 / (std::abs(factor) * way.norm() + 1e-300));
+  for (int d = 0; d < Dim; ++d)
+    EXPECT_NEAR(s.particles[shift_velocity][d][k], less * factor * way[d], 50 * digits<Real>);
+}
+
 TYPED_TEST(CorrectionsOf, ShiftTowardsWhereParticlesAreFewButNotAtTheSurface) {
   MOLTEN_FLAVOUR;
   const double fastest = 2;
@@ -97,18 +112,34 @@ TYPED_TEST(CorrectionsOf, ShiftTowardsWhereParticlesAreFewButNotAtTheSurface) {
   int moved = 0, still = 0;
   for_each_particle(s.particles, [&](std::size_t k, const auto& x) {
     const double inner = correction_for(naive[k]).inner;
-    const double factor = -3 * fastest * s.parameters.smoothing_length * inner;
-    const double less = std::min(1.0, fastest / 2 / (std::abs(factor) * naive[k].crowding.norm() + 1e-300));
-    for (int d = 0; d < Dim; ++d)
-      EXPECT_NEAR(s.particles[shift_velocity][d][k], less * factor * naive[k].crowding[d], 50 * digits<Real>);
+    expect_shift<Dim, Real>(s, k, fastest, way_of(naive[k], inner));
     if (inner == 1) ++moved;
-    if (!well_inside<Dim>(x, (Dim == 2 ? 16 : 9) * spacing, 0.5 * spacing)) {
+    if (!well_inside<Dim>(x, (Dim == 2 ? 16 : 9) * spacing, 0.5 * spacing) && naive[k].parting.isZero(0)) {
       ++still;
       EXPECT_EQ(s.particles[shift_velocity][0][k], 0);
     }
   });
   EXPECT_GT(moved, 0);
   EXPECT_GT(still, 0);
+}
+
+TYPED_TEST(CorrectionsOf, PartCloseNeighboursAtTheSurfaceToo) {
+  MOLTEN_FLAVOUR;
+  const double fastest = 2;
+  const Flow flow = [&](const X&) { return X{fastest, 0, 0}; };
+  const auto s = block<Dim, Real>(corrected_scene(Dim), flow, 0.4);
+  Scene uncoupled = corrected_scene(Dim);
+  uncoupled.numerics.shifting->coupling = 0;
+  const auto without = block<Dim, Real>(uncoupled, flow, 0.4);
+  const auto naive = naive_sums(s);
+  int parted = 0;
+  for_each_particle(s.particles, [&](std::size_t k, const auto&) {
+    const double inner = correction_for(naive[k]).inner;
+    expect_shift<Dim, Real>(s, k, fastest, way_of(naive[k], inner));
+    expect_shift<Dim, Real>(without, k, fastest, way_of(naive[k], inner, 0));
+    parted += inner == 0 && !naive[k].parting.isZero(0);
+  });
+  EXPECT_GT(parted, 0);
 }
 
 TYPED_TEST(CorrectionsOf, MakeTheDivergenceOfLinearFlowsExactButAtTheSurface) {

@@ -116,7 +116,7 @@ TEST(StudyExperiments, ScoresOfTheFirstMomentAreThoseByHand) {
       {"lobovsky-front",
        "lobovsky2014_fig12_front_H600mm.csv",
        "T,Z\n0,0.1\n0.11,1.25\n0.12,1.25\n1,3\n1.1,3\n",
-       {},
+       {"gate=0"},
        {{"front_raw", 0.2}}},
       // Gauge H4 stands 0.582 m from the wall behind the water, 0.55 m deep; H2 is dry; no pressure has come yet.
       {"kleefsman",

@@ -22,9 +22,24 @@ Setup dam_break(const DamBreak& d) {
             fmt::format("[[boundary]]\nbox = {}\ninside = true\nslip = {:.17g}\n", box_text(d.dimensions, {}, d.tank),
                         d.slip) +
             "[numerics]\n" + wall_support_text();
+  if (d.gate > 0) s.scene += gate_text(d.column[0], d.column[1] + 5 * d.spacing, d.spacing, d.gate);
   s.start = lattice(d.dimensions, {}, size, d.spacing);
   for (const Triple& x : s.start.position) s.pressure.push_back(density * gravity * (size[up] - x[up]));
   return s;
+}
+
+Parameter gate_parameter(double speed) {
+  return {"gate", speed, "speed at which a gate before the column rises, m/s; 0: none; none with dias and queiroz"};
+}
+
+double gate_of(const Request& request) {
+  return request.numerics == "dias" || request.numerics == "queiroz" ? 0 : request["gate"];
+}
+
+std::string gate_text(double left, double top, double spacing, double speed) {
+  return fmt::format(
+      "[[boundary]]\nbox = {{ min = [{}, {}], max = [{}, {}] }}\nmotion = {{ velocity = [0, {}] }}\nslip = 1\n", left,
+      spacing / 10, left + 2 * spacing, top, speed);
 }
 
 double front_of(const Cloud& cloud) {

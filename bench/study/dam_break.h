@@ -11,10 +11,18 @@ struct DamBreak {
   Triple column{}, tank{};  // m; sizes along x, y (up in 2-D), z (up in 3-D)
   double spacing = 0;       // m
   double slip = 1;          // of the walls
+  double gate = 0;          // speed at which a gate before the column rises, m/s; 0: none. In 2-D
 };
 
 /// At rest, with hydrostatic pressure.
 Setup dam_break(const DamBreak& d);
+
+/// The case's parameter of that name. Lobovský et al. (2014) measured theirs: 4.53 m/s is the median.
+Parameter gate_parameter(double speed = 0);
+/// Its value; 0 with the presets whose integrators know no moving walls.
+double gate_of(const Request& request);
+/// A gate whose face towards the column is at `left` (m), from the floor to `top` (m), in 2-D.
+std::string gate_text(double left, double top, double spacing, double speed);
 
 /// The front (m from the closed wall): the fifth-farthest particle's far side, so that a few drops don't count.
 double front_of(const Cloud& cloud);

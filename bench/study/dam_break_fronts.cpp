@@ -38,7 +38,8 @@ void run_cruchaga(const Request& r, Report& report, const Series& experiment, do
   report.expect("front_mean", reach);
   for (const double t : experiment.at) report.expect(fmt::format("front_{}s", t), no_reach);
   const double width = r["width"];
-  const DamBreak d{2, {width, r["height"], 0}, {0.42, 0.44, 0}, width / static_cast<double>(r.size), r["slip"]};
+  const DamBreak d{2,         {width, r["height"], 0}, {0.42, 0.44, 0}, width / static_cast<double>(r.size), r["slip"],
+                   gate_of(r)};
   const Series front = record(r, report, d, experiment.at.back()).front;
   report.judge("front_mean", mean_deviation(front, experiment));
   for (std::size_t k = 0; k < experiment.at.size(); ++k)
@@ -60,7 +61,7 @@ Case cruchaga(const std::string& name, double height, void (*run)(const Request&
           "particles across the column",
           36,
           6,
-          {{"width", 0.114, "of the column, m"}, {"height", height, "of the column, m"}, slip},
+          {{"width", 0.114, "of the column, m"}, {"height", height, "of the column, m"}, slip, gate_parameter()},
           run};
 }
 
@@ -73,7 +74,8 @@ void run_lobovsky_front(const Request& r, Report& report) {
     expect_series(report, "front", 0.06, no_reach);
     report.expect("wall_arrival", 0.05);
   }
-  const DamBreak d{2, {0.6, height, 0}, {wall, 1.5 * height, 0}, height / static_cast<double>(r.size), r["slip"]};
+  const DamBreak d{2,         {0.6, height, 0}, {wall, 1.5 * height, 0}, height / static_cast<double>(r.size),
+                   r["slip"], gate_of(r)};
   const Series front = record(r, report, d, 2 * unit).front;
   if (!experiment) return;
   // Z = 1 + (x − 0.6 m)/H
@@ -93,7 +95,8 @@ void run_martin_moyce(const Request& r, Report& report) {
   const auto height = reference("dambreak/martin_moyce1952_table6_height_n2_2_a2.25in.csv", "tau", "H");
   if (front) expect_series(report, "front", no_reach, 0.04);
   if (height) expect_series(report, "height", no_reach, 0.04);
-  const DamBreak d{2, {a, ratio * a, 0}, {16 * a, 1.2 * ratio * a, 0}, a / static_cast<double>(r.size), r["slip"]};
+  const DamBreak d{2,         {a, ratio * a, 0}, {16 * a, 1.2 * ratio * a, 0}, a / static_cast<double>(r.size),
+                   r["slip"], gate_of(r)};
   const double end = r["end_time"];
   const Record run = record(r, report, d, end * unit);
   if (front) judge_series(report, "front", run.front.scaled(1 / unit, 1 / a), front->between(0, end));
@@ -108,8 +111,12 @@ void run_koshizuka(const Request& r, Report& report) {
   const auto experiment = reference("dambreak/koshizuka_oka1996_exp_front_dualsphysics.csv", "t_s", "x_tip_m");
   if (experiment) expect_series(report, "front", no_reach, 0.04);
   const double width = r["width"], ratio = r["aspect_ratio"], unit = std::sqrt(width);
-  const DamBreak d{
-      2, {width, ratio * width, 0}, {4 * width, 2 * ratio * width, 0}, width / static_cast<double>(r.size), r["slip"]};
+  const DamBreak d{2,
+                   {width, ratio * width, 0},
+                   {4 * width, 2 * ratio * width, 0},
+                   width / static_cast<double>(r.size),
+                   r["slip"],
+                   gate_of(r)};
   const Series front = record(r, report, d, 0.75 * unit).front;
   if (!experiment) return;
   // As far as 3.9 widths: there is the wall.
@@ -129,7 +136,7 @@ Case lobovsky_front() {
           "particles a height of the column",
           60,
           8,
-          {{"height", 0.6, "of the column, m"}, slip},
+          {{"height", 0.6, "of the column, m"}, slip, gate_parameter(4.53)},
           run_lobovsky_front};
 }
 
@@ -142,7 +149,8 @@ Case martin_moyce() {
           {{"width", 0.05715, "of the column, m"},
            {"aspect_ratio", 2, "height over width"},
            {"end_time", 3.4, "√(width/2g)"},
-           slip},
+           slip,
+           gate_parameter()},
           run_martin_moyce};
 }
 
@@ -153,7 +161,7 @@ Case koshizuka() {
           "particles across the column",
           40,
           6,
-          {{"width", 1, "of the column, m"}, {"aspect_ratio", 2, "height over width"}, slip},
+          {{"width", 1, "of the column, m"}, {"aspect_ratio", 2, "height over width"}, slip, gate_parameter()},
           run_koshizuka};
 }
 

@@ -40,7 +40,8 @@ void run_lobovsky_pressure(const Request& r, Report& report) {
     report.expect("p1_peak", 0.15);
     report.expect("p1_arrival", 0.05);
   }
-  const DamBreak d{2, {0.6, height, 0}, {wall, 2 * height, 0}, height / static_cast<double>(r.size), r["slip"]};
+  const DamBreak d{2,         {0.6, height, 0}, {wall, 2 * height, 0}, height / static_cast<double>(r.size),
+                   r["slip"], gate_of(r)};
   const auto simulation = Simulation::make(r, dam_break(d), report);
   Series front, pressure;
   simulation->run_until(r["end_time"] * unit, 0.005 * unit, [&](const Cloud& c) {
@@ -116,7 +117,8 @@ Case lobovsky_pressure() {
           8,
           {{"height", 0.3, "of the column, m"},
            {"end_time", 3.5, "√(height/g)"},
-           {"slip", 1, "of the walls: 1 free slip, 0 no-slip"}},
+           {"slip", 1, "of the walls: 1 free slip, 0 no-slip"},
+           gate_parameter(4.53)},
           run_lobovsky_pressure};
 }
 

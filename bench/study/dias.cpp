@@ -46,24 +46,18 @@ Start column_of(const Tank& t) {
   return start;
 }
 
-/// A gate before the column that rises.
-std::string gate_text(const Tank& t, double speed) {
-  const double spacing = t.cell / std::numbers::sqrt2, left = t.columns * t.cell + spacing / 2;
-  return fmt::format(
-      "[[boundary]]\nbox = {{ min = [{}, {}], max = [{}, {}] }}\nmotion = {{ velocity = [0, {}] }}\nslip = 1\n", left,
-      spacing / 10, left + 2 * spacing, (t.rows + 4) * t.cell, speed);
-}
-
 Setup setup_of(const Request& r, const Tank& t) {
   const bool as_dias = r.numerics == "dias";
   const double right = t.width * t.cell, top = t.height * t.cell;
+  const double spacing = t.cell / std::numbers::sqrt2;
   Setup s;
-  s.scene = scene_head(2, {0, -9.81, 0}) + fluid_text(2, t.cell / std::numbers::sqrt2, 1000, "hydrostatic = true") +
+  s.scene = scene_head(2, {0, -9.81, 0}) + fluid_text(2, spacing, 1000, "hydrostatic = true") +
             fmt::format(
                 "[[boundary]]\npolygon = {{ points = [[0, {1}], [0, 0], [{0}, 0], [{0}, {1}]], open = true }}\n"
                 "inside = true\nslip = {2}\n",
                 right, top, r["slip"]);
-  if (r["gate"] > 0) s.scene += gate_text(t, r["gate"]);
+  if (gate_of(r) > 0)
+    s.scene += gate_text(t.columns * t.cell + spacing / 2, (t.rows + 4) * t.cell, spacing, gate_of(r));
   // h = 0.92 √2 of [D]'s cells.
   if (as_dias) s.scene += sound_speed_text(t.sound_speed) + "smoothing_ratio = 1.84\n";
   s.start = column_of(t);
@@ -74,7 +68,6 @@ Setup setup_of(const Request& r, const Tank& t) {
 double front_particle(const Cloud& c) { return front_of(c) - c.spacing / 2; }
 
 const Parameter slip{"slip", 1, "of the walls: 1 free slip, 0 no-slip; boundary particles hold by themselves"};
-const Parameter gate{"gate", 0, "speed at which a gate before the column rises, m/s; 0: none; not with preset dias"};
 
 // ---- tables 6.2 to 6.4 ----------------------------------------------------------------------------------------------
 
@@ -144,7 +137,7 @@ Case table_case(const std::string& name, const std::string& what, const Tank& ta
           "columns of Dias' lattice",
           tank.columns,
           8,
-          {{"alpha", alpha, "artificial viscosity of preset dias"}, slip, gate},
+          {{"alpha", alpha, "artificial viscosity of preset dias"}, slip, gate_parameter()},
           run};
 }
 
@@ -245,7 +238,7 @@ Case dias_tank() {
           "columns of Dias' lattice",
           figure_tank.columns,
           8,
-          {{"alpha", 0.3, "artificial viscosity of preset dias"}, {"end_time", 1, "s"}, slip, gate},
+          {{"alpha", 0.3, "artificial viscosity of preset dias"}, {"end_time", 1, "s"}, slip, gate_parameter()},
           run_figures};
 }
 

@@ -1,8 +1,10 @@
 // Particle shifting (Lind et al. 2012; Skillen et al. 2013): particles move with v + δv,
 // δv_i = −C U h Σ V_j ∇W_ij, U the largest speed, from where they are many to where they are few. It fades towards a
-// free surface, where the sum measures the missing half (GradientCorrection::inner), and stays below U/2. What a moving
-// particle then sees of the field that it carries (arbitrary Lagrangian-Eulerian; Sun et al. 2019): dv/dt += (δv·∇)v
-// and dρ/dt += δv·∇ρ, both with corrected gradients.
+// free surface, where the sum measures the missing half (GradientCorrection::inner), and stays below U/2. There
+// neighbours nearer than 0.65 Δx, and they alone, part in its place, or particles clump: their share of the sum, with
+// the weight 1 − r²/(0.65 Δx)², lacks no half. (From 0.8 Δx on a rotating patch loses four times the energy.) What a
+// moving particle then sees of the field that it carries (arbitrary Lagrangian-Eulerian; Sun et al. 2019): dv/dt +=
+// (δv·∇)v and dρ/dt += δv·∇ρ, both with corrected gradients.
 #pragma once
 
 #include "core/fields.h"
@@ -20,6 +22,24 @@ struct Crowding {
   template <class Pair, class I, class J, class Out>
   [[gnu::always_inline]] void operator()(const Pair& ij, const I&, const J&, Out& out) const {
     out.along(crowding_gradient, decltype(ij.r2)(1));
+  }
+};
+
+/// Sums ρ0 Σ V_j max(0, 1 − r²/(0.65 Δx)²) ∇W_ij: zero for particles in order.
+template <class Real> struct PartingOfClose {
+  using Reads = FieldList<>;
+  using Sums = FieldList<Parting>;
+  using Radial = FieldList<Parting>;
+  static constexpr bool at_walls = false;  // the fluid's alone
+  static constexpr bool on = true;
+  Real inverse_near2 = 0;  // 1/m²
+
+  explicit PartingOfClose(double spacing) : inverse_near2(Real(1 / (0.65 * 0.65 * spacing * spacing))) {}
+
+  template <class Pair, class I, class J, class Out>
+  [[gnu::always_inline]] void operator()(const Pair& ij, const I&, const J&, Out& out) const {
+    using L = std::decay_t<decltype(ij.r2)>;
+    out.along(parting, max(L(1) - L(inverse_near2) * ij.r2, L(0)));
   }
 };
 

@@ -72,6 +72,13 @@ TEST(StudyOrder, StandingWaveDecaysAsItShould) {
   EXPECT_LT(error_of("standing-wave", 32, "internal"), 0.01);
 }
 
+TEST(StudyOrder, FreeBodiesKeepTheirEnergyAndDoNotClump) {
+  for (const auto& [name, size] : {std::pair{"elliptic-drop", 20}, std::pair{"rotating-patch", 50}}) {
+    EXPECT_LT(error_of(name, size, "molten", {}, "kinetic_energy"), 0.01) << name;
+    EXPECT_EQ(error_of(name, size, "molten", {}, "clumped_part"), 0) << name;
+  }
+}
+
 TEST(SlowStudyOrder, HotSpotInASolidIsOfSecondOrderWithCorrection) {
   EXPECT_GT(errors_of("hot-spot", 25, "molten", {"numerics.gradient_correction=true", "dimensions=3"}).order(), 1.8);
 }
