@@ -1,4 +1,5 @@
-// How far each particle may go from where it was sorted before it can meet a wall, in a byte: most need no collision.
+// How far each particle may go from where it was sorted before it can meet a wall, in half a byte: most need no
+// collision.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +16,17 @@ class FreeWay {
   static constexpr double longest = 0.5;
 
   /// Nobody meets a wall within the longest.
-  void reset(std::size_t slots) { parts_.assign(slots, beyond); }
-  /// `way` in spacings.
-  void set(std::size_t slot, double way) { parts_[slot] = way < longest ? part_of(way) : beyond; }
+  void reset(std::size_t slots) { parts_.assign(slots / 2, beyond << 4 | beyond); }
+  /// `way` in spacings. Two slots share a byte: those of a cluster are for one thread.
+  void set(std::size_t slot, double way) {
+    std::uint8_t& both = parts_[slot / 2];
+    const int part = way < longest ? part_of(way) : beyond;
+    both = static_cast<std::uint8_t>(slot % 2 ? (both & 15) | part << 4 : (both & ~15) | part);
+  }
 
-  /// The most that a byte may be for a wall to be met within `way` (spacings, at most the longest).
+  /// The most that a part may be for a wall to be met within `way` (spacings, at most the longest).
   static std::uint8_t part_of(double way) { return static_cast<std::uint8_t>(parts_per_spacing * std::max(0.0, way)); }
-  bool within(std::uint8_t part, std::size_t slot) const { return parts_[slot] <= part; }
+  bool within(std::uint8_t part, std::size_t slot) const { return (parts_[slot / 2] >> slot % 2 * 4 & 15) <= part; }
   /// For any of a cluster.
   bool any_within(std::uint8_t part, std::size_t cluster) const {
     bool any = false;
@@ -33,8 +38,8 @@ class FreeWay {
   std::size_t bytes() const { return parts_.capacity(); }
 
  private:
-  static constexpr double parts_per_spacing = 256;
-  static constexpr std::uint8_t beyond = 255;
+  static constexpr double parts_per_spacing = 28;
+  static constexpr std::uint8_t beyond = 15;
   std::vector<std::uint8_t> parts_;
 };
 
