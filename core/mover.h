@@ -71,8 +71,8 @@ template <int Dim, class Real> class Mover {
     return false;
   }
 
-  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent
-  /// or a wall moves, does not count. `kicks`: what bodies give to particles is added.
+  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent or a wall moves, does
+  /// not count. `kicks`: what bodies give to particles is added.
   ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
     if (may_collide(cluster)) {
       ClusterMotion<Dim> moved = m;  // a copy for the other function: elsewhere the motion stays in registers

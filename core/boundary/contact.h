@@ -14,9 +14,8 @@
 // - After 8 bounces the motion of this step ends at the last contact.
 // - A two-sided wall is two walls back to back.
 // - A body that moves is met in its own frame, where a particle's way over the step counts as straight: what is in
-// front
-//   of its surface stays there. Between a body and a wall, and between bodies, the same rules hold; a gap that closes
-//   to less than a diameter is no room.
+//   front of its surface stays there. Between a body and a wall, and between bodies, the same rules hold; a gap that
+//   closes to less than a diameter is no room.
 // - Corners at exactly the same place join, also of different walls. A facet without area holds from all sides.
 // - The same contact time: faces before edges and vertices, then planes, then the lower facet index, and walls before
 //   bodies.
