@@ -187,7 +187,7 @@ Case slope_yield() {
           16,
           4,
           {{"slope", 20, "degrees"},
-           {"part_of_yield", 0.3, "stress at the slope over the yield stress"},
+           {"part_of_yield", 0.5, "stress at the slope over the yield stress"},
            {"jump_number", 150, "J"},
            {"end_time", 0.2, "√(depth/g)"}},
           run_slope};
