@@ -46,7 +46,7 @@ template <int Dim, class Real> void minimal_integrate(State<Dim, Real>& s) {
     store_rounded(half, half_c + slot);
     store_rounded(half + Wide(dt / 2) * (rate + rise), c + slot);
     store_rounded(rate, previous + slot);
-    furthest = std::max(furthest, largest(way2));
+    raise(furthest, way2);
     s.neighbours.localise(p, cluster);
     store_rounded(s.parameters.eos.term(read(c + slot)), p[pressure_term][0] + slot);
   };

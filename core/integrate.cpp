@@ -21,6 +21,20 @@ namespace molten {
 
 namespace {
 
+/// What a step has done: the square of the largest displacement (m²), and what bodies have given to particles.
+template <int Dim> struct Moved {
+  double way2 = 0;
+  std::vector<Kick<Dim>> kicks;  // by body
+
+  void join(const Moved& m) {
+    way2 = std::max(way2, m.way2);
+    for (std::size_t k = 0; k < kicks.size(); ++k) {
+      kicks[k].linear += m.kicks[k].linear;
+      kicks[k].angular += m.kicks[k].angular;
+    }
+  }
+};
+
 /// By leap-frog or symplectic Euler. Four particles at once: the pass is bound by memory, and one by one by
 /// instructions. What is padding has no rates, so it stays at zero.
 template <bool leap_frog, int Dim, class Real> class Integrator {
@@ -36,22 +50,17 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
         drift_(s),
         mover_(s) {}
 
-  /// Moves the particles of a cluster; returns the square of the longest displacement (m²). `kicks`: what bodies give
-  /// to them is added.
-  double advance(std::size_t cluster, std::span<Kick<Dim>> kicks) const {
+  /// Moves the particles of a cluster.
+  void advance(std::size_t cluster, Moved<Dim>& all) const {
     const std::size_t slot = cluster * cluster_size;
-    ClusterMotion<Dim> motion = kicked(slot);
-    const Vec<Dim, Wide> before = motion.position;
-    Wide bounced = mover_.move_cluster(cluster, motion, kicks);
-    if (inlet_) push(slot, before, motion, bounced);
-    if (held_ && s_.features.bodies) carry(slot, before, motion);
-    keep(slot, motion, bounced);
+    if (driven_ || mover_.may_collide(cluster))
+      guide(cluster, all);
+    else
+      let_go(slot, all);
     advance_compression(slot);
     if (s_.features.internal_energy) add(internal_energy_ + slot, kick_, internal_energy_rate_ + slot);
     if (s_.features.heat) add(temperature_ + slot, dt_, temperature_rate_ + slot);
     if (s_.features.sleep) count_rest(slot);
-    const Vec<Dim, Wide> way = motion.position - before;
-    return largest(dot(way, way));
   }
 
  private:
@@ -77,16 +86,60 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
     if (rest_temperature_) rest_temperature_[slot] = static_cast<Real>(temperature_[slot]);
   }
 
-  ClusterMotion<Dim> kicked(std::size_t slot) const {
-    ClusterMotion<Dim> m;
-    const auto& v = leap_frog ? half_velocity_.c : velocity_.c;
+  /// With nothing in the way. Axis by axis: it all stays in registers.
+  void let_go(std::size_t slot, Moved<Dim>& all) const {
+    Wide way2(0.0);
     for (int d = 0; d < Dim; ++d) {
-      m.position[d] = load<cluster_size>(position_[d] + slot);
-      m.velocity[d] = read(v[d] + slot) + Wide(kick_) * read(acceleration_[d] + slot);
-      m.rate[d] = drift_.rate(m.velocity[d], d, slot);
-      m.velocity[d] = drift_.overwritten(m.velocity[d], d, slot);
+      const Kicked to = kicked(d, slot);
+      const Wide way = Wide(dt_) * to.rate;
+      store(load<cluster_size>(position_[d] + slot) + way, position_[d] + slot);
+      keep_velocity(d, slot, to.velocity, Wide(dt_ / 2));
+      way2 += way * way;
     }
-    return m;
+    raise(all.way2, way2);
+  }
+
+  /// Where walls, vents and bodies have a say.
+  [[gnu::noinline]] void guide(std::size_t cluster, Moved<Dim>& all) const {
+    const std::size_t slot = cluster * cluster_size;
+    ClusterMotion<Dim> motion;
+    for (int d = 0; d < Dim; ++d) {
+      const Kicked to = kicked(d, slot);
+      motion.position[d] = load<cluster_size>(position_[d] + slot);
+      motion.velocity[d] = to.velocity;
+      motion.rate[d] = to.rate;
+    }
+    const Vec<Dim, Wide> before = motion.position;
+    Wide bounced = mover_.move_cluster(cluster, motion, all.kicks);
+    if (inlet_) push(slot, before, motion, bounced);
+    if (held_ && s_.features.bodies) carry(slot, before, motion);
+    // The wall has already had its say on a particle that bounced.
+    const Wide ahead = Wide(dt_ / 2) * (Wide(1.0) - bounced);
+    for (int d = 0; d < Dim; ++d) {
+      store(motion.position[d], position_[d] + slot);
+      keep_velocity(d, slot, motion.velocity[d], ahead);
+    }
+    const Vec<Dim, Wide> way = motion.position - before;
+    raise(all.way2, dot(way, way));
+  }
+
+  struct Kicked {
+    Wide velocity, rate;  // m/s; after the kick, and that of the place
+  };
+  Kicked kicked(int d, std::size_t slot) const {
+    const auto& v = leap_frog ? half_velocity_.c : velocity_.c;
+    const Wide velocity = read(v[d] + slot) + Wide(kick_) * read(acceleration_[d] + slot);
+    return {drift_.overwritten(velocity, d, slot), drift_.rate(velocity, d, slot)};
+  }
+
+  /// By leap-frog the velocity at the full step is `ahead` (s) of the half step's.
+  void keep_velocity(int d, std::size_t slot, const Wide& value, const Wide& ahead) const {
+    if constexpr (leap_frog) {
+      write(value, half_velocity_[d] + slot);
+      write(value + ahead * read(acceleration_[d] + slot), velocity_[d] + slot);
+    } else {
+      write(value, velocity_[d] + slot);
+    }
   }
 
   /// A vent moves what is in it like a piston; walls do not concern it, and its temperature stays what it entered with.
@@ -120,16 +173,6 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
         set_lane(m.position[d], n, after[d]);
         set_lane(m.velocity[d], n, (after[d] - at[d]) / dt_);
       }
-    }
-  }
-
-  void keep(std::size_t slot, const ClusterMotion<Dim>& m, const Wide& bounced) const {
-    // The wall has already had its say on a particle that bounced.
-    const Wide ahead = leap_frog ? Wide(dt_ / 2) * (Wide(1.0) - bounced) : Wide(0.0);
-    for (int d = 0; d < Dim; ++d) {
-      store(m.position[d], position_[d] + slot);
-      if (leap_frog) write(m.velocity[d], half_velocity_[d] + slot);
-      write(m.velocity[d] + ahead * read(acceleration_[d] + slot), velocity_[d] + slot);
     }
   }
 
@@ -174,20 +217,7 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
   Real* rest_temperature_ = p_[rest_temperature][0];
   std::int64_t* inlet_ = p_[inlet][0];  // null without vents
   const Real* held_ = p_[held][0];      // null without boundary particles
-};
-
-/// What a step has done: the square of the largest displacement (m²), and what bodies have given to particles.
-template <int Dim> struct Moved {
-  double way2 = 0;
-  std::vector<Kick<Dim>> kicks;  // by body
-
-  void join(const Moved& m) {
-    way2 = std::max(way2, m.way2);
-    for (std::size_t k = 0; k < kicks.size(); ++k) {
-      kicks[k].linear += m.kicks[k].linear;
-      kicks[k].angular += m.kicks[k].angular;
-    }
-  }
+  bool driven_ = inlet_ || held_;
 };
 
 /// What the pair passes read of a cluster's particles, from their state.
@@ -232,7 +262,7 @@ template <bool leap_frog, int Dim, class Real> Moved<Dim> move_all(State<Dim, Re
   return reduce_slots(
       s.neighbours.clusters() - first, Moved<Dim>{0, std::vector<Kick<Dim>>(s.bodies.count())},
       [&](std::size_t k, Moved<Dim>& all) {
-        all.way2 = std::max(all.way2, integrator.advance(first + k, all.kicks));
+        integrator.advance(first + k, all);
         preparation.of(first + k);
       },
       [](Moved<Dim>& a, const Moved<Dim>& b) { a.join(b); });

@@ -251,7 +251,7 @@ template <int Dim, class Real> double largest_acceleration2(const State<Dim, Rea
           const L own = load<cluster_size>(a[d] + c * cluster_size);
           a2 += own * own;
         }
-        all = std::max(all, static_cast<double>(largest(a2)));
+        raise(all, a2);
       },
       [](double& x, double y) { x = std::max(x, y); });
 }

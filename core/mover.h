@@ -71,36 +71,27 @@ template <int Dim, class Real> class Mover {
     return false;
   }
 
-  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent or a wall moves, does
-  /// not count. `kicks`: what bodies give to particles is added.
-  ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
-    if (may_collide(cluster)) {
-      ClusterMotion<Dim> moved = m;  // a copy for the other function: elsewhere the motion stays in registers
-      const ClusterLanes bounced = collide_cluster(cluster, moved, kicks);
-      m = moved;
-      return bounced;
-    }
-    m.position += ClusterLanes(s_.clock.dt) * m.rate;
-    return ClusterLanes(0.0);
-  }
-
- private:
+  /// May any of a cluster meet a wall in this step?
   bool may_collide(std::size_t cluster) const {
     return contact_ && (way_ > FreeWay::longest || s_.free_way.any_within(part_, cluster));
   }
-  bool may_bounce(std::size_t slot) const {
-    return (way_ > FreeWay::longest || s_.free_way.within(part_, slot)) && !s_.particles.is_padding(slot) &&
-           !(inlet_ && inlet_[slot] >= 0) && !(held_ && held_[slot] > 0);
-  }
 
-  [[gnu::noinline]] ClusterLanes collide_cluster(std::size_t cluster, ClusterMotion<Dim>& m,
-                                                 std::span<Kick<Dim>> kicks) const {
+  /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent or a wall moves, does
+  /// not count. `kicks`: what bodies give to particles is added.
+  ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
     const Vec<Dim, ClusterLanes> before = m.position;
     m.position += ClusterLanes(s_.clock.dt) * m.rate;
     ClusterLanes bounced(0.0);
+    if (!may_collide(cluster)) return bounced;
     for (int n = 0; n < cluster_size; ++n)
       if (may_bounce(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(before, m, n, kicks)));
     return bounced;
+  }
+
+ private:
+  bool may_bounce(std::size_t slot) const {
+    return (way_ > FreeWay::longest || s_.free_way.within(part_, slot)) && !s_.particles.is_padding(slot) &&
+           !(inlet_ && inlet_[slot] >= 0) && !(held_ && held_[slot] > 0);
   }
 
   bool collide(const Vec<Dim, ClusterLanes>& before, ClusterMotion<Dim>& of, int n, std::span<Kick<Dim>> kicks) const {

@@ -89,12 +89,6 @@ template <int Dim, class Real> struct RatesFinish {
       for (int d = 0; d < Dim; ++d) store(correction[d], x[d] + slot);
       raise(extremes.xsph2, dot(correction, correction));
     }
-
-    /// Infinity stands for what is not a number, too.
-    template <class L> void raise(double& extreme, const L& value) const {
-      using Number = std::decay_t<decltype(lane(value, 0))>;
-      if (!all_at_most(value, static_cast<Number>(extreme))) extreme = largest(value);
-    }
   };
   OfChunk for_chunk(std::size_t k) const { return {s, extremes[k], s.particles}; }
 };

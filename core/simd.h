@@ -300,6 +300,10 @@ template <class Real, int N> inline Real largest(Lanes<Real, N> a) {
   for (int k = 0; k < N; ++k) most = lane(a, k) <= most ? most : lane(a, k) == lane(a, k) ? lane(a, k) : INFINITY;
   return most == most ? most : INFINITY;
 }
+/// Raises `most` to the largest lane. A running maximum seldom rises: one comparison nearly always.
+template <class Most, class Real, int N> inline void raise(Most& most, Lanes<Real, N> a) {
+  if (!all_at_most(a, static_cast<Real>(most))) most = largest(a);
+}
 
 // ---- lists of numbers -----------------------------------------------------------------------------------------------
 
