@@ -1,5 +1,6 @@
 #include "core/boundary/wall_support.h"
 
+#include "core/boundary/near_walls.h"
 #include "core/particle_pass.h"
 
 namespace molten {
@@ -49,22 +50,15 @@ template <int Dim> std::int32_t WallSupport<Dim>::plane_near(const Point<Dim>& x
 
 template <int Dim>
 template <class Real>
-void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t first_slot, const Bodies<Dim>& bodies) {
+void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t first_slot, const Bodies<Dim>& bodies,
+                            const Contact<Dim>& contact) {
   place(bodies);
-  const std::size_t clusters = particles.slots() / cluster_size;
-  plane_.assign(clusters, no_plane);
-  const auto x = particles[position];
-  const std::size_t first = first_slot / cluster_size;
-  for_each_slot(clusters - first, [&](std::size_t n) {
-    const std::size_t c = first + n;
-    for (std::size_t slot = c * cluster_size; slot < (c + 1) * cluster_size; ++slot) {
-      if (particles.is_padding(slot)) continue;
-      Point<Dim> point;
-      for (int k = 0; k < Dim; ++k) point[k] = x[k][slot];
-      const std::int32_t plane = plane_near(point);
-      if (plane == no_plane) continue;
-      plane_[c] = plane_[c] == no_plane || plane_[c] == plane ? plane : many_planes;
-    }
+  plane_.assign(particles.slots() / cluster_size, no_plane);
+  for_each_near_walls(particles, contact, first_slot, reach_, [&](std::size_t slot, const Point<Dim>& x) {
+    std::int32_t& marked = plane_[slot / cluster_size];
+    if (marked == many_planes) return;
+    const std::int32_t plane = plane_near(x);
+    if (plane != no_plane) marked = marked == no_plane || marked == plane ? plane : many_planes;
   });
 }
 
@@ -101,8 +95,9 @@ template <int Dim> std::size_t WallSupport<Dim>::bytes() const {
 
 template class WallSupport<2>;
 template class WallSupport<3>;
-#define MOLTEN_INSTANTIATE(Dim, Real)                                                                 \
-  template void WallSupport<Dim>::mark(const Particles<Dim, Real>&, std::size_t, const Bodies<Dim>&); \
+#define MOLTEN_INSTANTIATE(Dim, Real)                                                                \
+  template void WallSupport<Dim>::mark(const Particles<Dim, Real>&, std::size_t, const Bodies<Dim>&, \
+                                       const Contact<Dim>&);                                         \
   template void WallSupport<Dim>::find_patches(const Particles<Dim, Real>&, std::size_t);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)
