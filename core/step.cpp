@@ -105,9 +105,13 @@ template <int Dim, class Real> void look_for_walls(State<Dim, Real>& s) {
   s.free_way.reset(s.particles.slots());
   if (s.features.bodies) s.bodies.place(s.contact);
   const double spacing = s.parameters.spacing, longest = FreeWay::longest * spacing;
-  for_each_near_walls(
-      s.particles, s.contact, s.neighbours.first_slot(Block::active), longest,
-      [&](std::size_t slot, const Point<Dim>& x) { s.free_way.set(slot, s.contact.free_way(x, longest) / spacing); });
+  const std::size_t first = s.neighbours.first_slot(Block::active);
+  for_each_near_walls(s.particles, s.contact, first, longest, [&](std::size_t cluster) {
+    const std::size_t slot = cluster * cluster_size;
+    for_each_place(s.particles, slot, slot + cluster_size, [&](std::size_t k, const Point<Dim>& x) {
+      s.free_way.set(k, s.contact.free_way(x, longest) / spacing);
+    });
+  });
   if (s.features.wall_support)
     s.wall_support.mark(s.particles, s.neighbours.first_slot(Block::warm), s.bodies, s.contact);
 }

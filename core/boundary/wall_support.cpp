@@ -41,11 +41,11 @@ template <int Dim> void WallSupport<Dim>::place(const Bodies<Dim>& bodies) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].motion = bodies.motion(k);
 }
 
-template <int Dim> std::int32_t WallSupport<Dim>::plane_near(const Point<Dim>& x) const {
+template <int Dim> std::int32_t WallSupport<Dim>::plane_near(const Point<Dim>& x, double reach) const {
   for (const Moving& body : bodies_)
-    if (body.is_near(x, reach_) && body.integrals->plane_near(body.motion.start.to_body(x), reach_) != no_plane)
+    if (body.is_near(x, reach) && body.integrals->plane_near(body.motion.start.to_body(x), reach) != no_plane)
       return many_planes;
-  return integrals_->plane_near(x, reach_);
+  return integrals_->plane_near(x, reach);
 }
 
 template <int Dim>
@@ -54,11 +54,19 @@ void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t f
                             const Contact<Dim>& contact) {
   place(bodies);
   plane_.assign(particles.slots() / cluster_size, no_plane);
-  for_each_near_walls(particles, contact, first_slot, reach_, [&](std::size_t slot, const Point<Dim>& x) {
-    std::int32_t& marked = plane_[slot / cluster_size];
-    if (marked == many_planes) return;
-    const std::int32_t plane = plane_near(x);
-    if (plane != no_plane) marked = marked == no_plane || marked == plane ? plane : many_planes;
+  for_each_near_walls(particles, contact, first_slot, reach_, [&](std::size_t cluster) {
+    const std::size_t slot = cluster * cluster_size;
+    const PlacesBox<Dim> box(particles, slot, slot + cluster_size);
+    if (box.empty()) return;
+    std::int32_t& marked = plane_[cluster];
+    marked = plane_near((box.lower + box.upper) / 2, reach_ + (box.upper - box.lower).norm() / 2);
+    if (marked != many_planes) return;
+    marked = no_plane;
+    for_each_place(particles, slot, slot + cluster_size, [&](std::size_t, const Point<Dim>& x) {
+      if (marked == many_planes) return;
+      const std::int32_t plane = plane_near(x, reach_);
+      if (plane != no_plane) marked = marked == no_plane || marked == plane ? plane : many_planes;
+    });
   });
 }
 

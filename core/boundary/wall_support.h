@@ -73,7 +73,7 @@ template <int Dim> class WallSupport {
     bool is_near(const Point<Dim>& x, double reach) const { return (x - motion.start.centre).norm() < extent + reach; }
   };
   template <class Visit> void visit_all(const Point<Dim>& x, Visit&& visit) const;
-  std::int32_t plane_near(const Point<Dim>& x) const;
+  std::int32_t plane_near(const Point<Dim>& x, double reach) const;
 
   std::shared_ptr<const WallIntegrals<Dim>> integrals_;  // of the walls that stay in place
   std::vector<Moving> bodies_;
