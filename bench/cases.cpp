@@ -20,6 +20,41 @@ template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, con
   return make_state<Dim, Real>(features_of(scene), p, build_surroundings(scene, start, p), start);
 }
 
+template <int Dim, class Real> Moment moment_of(const State<Dim, Real>& s) {
+  const Particles<Dim, Real>& p = s.particles;
+  Moment m;
+  m.start.spacing = s.parameters.spacing;
+  m.start.measure = p.count() * s.parameters.particle_mass / s.parameters.eos.rest_density;
+  m.start.position.resize(p.count());
+  m.start.velocity.resize(p.count());
+  m.start.temperature.resize(p.has(temperature) ? p.count() : 0);
+  m.compression.resize(p.count());
+  for (std::size_t slot = 0; slot < p.slots(); ++slot) {
+    if (p.is_padding(slot)) continue;
+    const auto k = static_cast<std::size_t>(p[id][0][slot]);
+    for (int d = 0; d < Dim; ++d) {
+      m.start.position.at(k)[d] = p[position][d][slot];
+      m.start.velocity[k][d] = p[velocity][d][slot];
+    }
+    if (p.has(temperature)) m.start.temperature[k] = p[temperature][0][slot];
+    m.compression[k] = p[compression][0][slot];
+  }
+  return m;
+}
+
+template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Moment& moment) {
+  auto s = state_of<Dim, Real>(scene, moment.start);
+  Particles<Dim, Real>& p = s.particles;
+  for (std::size_t slot = 0; slot < p.slots(); ++slot) {
+    if (p.is_padding(slot)) continue;
+    const auto value = static_cast<Real>(moment.compression.at(static_cast<std::size_t>(p[id][0][slot])));
+    p[compression][0][slot] = value;
+    if (p.has(half_compression)) p[half_compression][0][slot] = value;
+  }
+  prepare(s);
+  return s;
+}
+
 Scene tank(int dimensions, double smoothing_ratio) {
   Scene scene;
   scene.dimensions = dimensions;
@@ -144,6 +179,12 @@ template State<2, float> state_of(const Scene&, const Start&);
 template State<2, double> state_of(const Scene&, const Start&);
 template State<3, float> state_of(const Scene&, const Start&);
 template State<3, double> state_of(const Scene&, const Start&);
+template Moment moment_of(const State<2, float>&);
+template Moment moment_of(const State<3, float>&);
+template State<2, float> state_of(const Scene&, const Moment&);
+template State<2, double> state_of(const Scene&, const Moment&);
+template State<3, float> state_of(const Scene&, const Moment&);
+template State<3, double> state_of(const Scene&, const Moment&);
 template State<3, float> block_in(const Scene&, long long);
 template State<2, float> jittered_block(long long, double);
 template State<2, double> jittered_block(long long, double);

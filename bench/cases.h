@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/scene.h"
 #include "core/state.h"
@@ -11,6 +12,14 @@ namespace molten::bench {
 
 /// A run of a scene as it starts.
 template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Start& start);
+
+/// What a run has come to, by particle: another run can go on from there.
+struct Moment {
+  Start start;
+  std::vector<double> compression;
+};
+template <int Dim, class Real> Moment moment_of(const State<Dim, Real>& s);
+template <int Dim, class Real> State<Dim, Real> state_of(const Scene& scene, const Moment& moment);
 
 /// A tank three times as long as the block of water in it; h = `smoothing_ratio` spacings.
 Scene tank(int dimensions, double smoothing_ratio);

@@ -17,21 +17,7 @@
 
 namespace molten::bench {
 
-namespace {
-
-constexpr double usual_smoothing_ratio = 1.3;
-constexpr int settling_steps = 200;
-constexpr int recipe = 1;  // raised when the prepared states become others
-
-/// What a dam break is known by, particle by particle in the order of the filling: 2 Dim + 1 numbers each (position, m;
-/// velocity, m/s; compression).
-template <int Dim> struct Motions {
-  static constexpr int width = 2 * Dim + 1;
-  double time = 0;  // s
-  std::vector<std::array<double, width>> of;
-};
-
-template <int Dim> Scene scene_of(long long count, double smoothing_ratio) {
+template <int Dim> Scene dam_break_scene(long long count, double smoothing_ratio) {
   const std::filesystem::path source = MOLTEN_SOURCE_DIR;
   Scene scene = read_scene(source / fmt::format("scenes/dam-break-{}d.toml", Dim));
   scene.fluid.particles = count;
@@ -47,6 +33,20 @@ template <int Dim> Scene scene_of(long long count, double smoothing_ratio) {
   return scene;
 }
 
+namespace {
+
+constexpr double usual_smoothing_ratio = 1.3;
+constexpr int settling_steps = 200;
+constexpr int recipe = 1;  // raised when the prepared states become others
+
+/// What a dam break is known by, particle by particle in the order of the filling: 2 Dim + 1 numbers each (position, m;
+/// velocity, m/s; compression).
+template <int Dim> struct Motions {
+  static constexpr int width = 2 * Dim + 1;
+  double time = 0;  // s
+  std::vector<std::array<double, width>> of;
+};
+
 /// ½ √(H/g), s
 template <int Dim> double time_of_interest(const Scene& scene) {
   const Box& column = *scene.fluid.bodies[0].shape.box;
@@ -55,21 +55,15 @@ template <int Dim> double time_of_interest(const Scene& scene) {
 
 template <int Dim, class Real>
 State<Dim, Real> state_in_motion(const Scene& scene, const Start& rest, const Motions<Dim>& motions) {
-  Start start = rest;
-  for (std::size_t k = 0; k < motions.of.size(); ++k)
+  Moment moment{rest, {}};
+  for (std::size_t k = 0; k < motions.of.size(); ++k) {
     for (int d = 0; d < Dim; ++d) {
-      start.position[k][d] = motions.of[k][d];
-      start.velocity[k][d] = motions.of[k][Dim + d];
+      moment.start.position[k][d] = motions.of[k][d];
+      moment.start.velocity[k][d] = motions.of[k][Dim + d];
     }
-  State<Dim, Real> s = state_of<Dim, Real>(scene, start);
-  Particles<Dim, Real>& p = s.particles;
-  for (std::size_t slot = 0; slot < p.slots(); ++slot) {
-    if (p.is_padding(slot)) continue;
-    const auto value = static_cast<Real>(motions.of[static_cast<std::size_t>(p[id][0][slot])][2 * Dim]);
-    p[compression][0][slot] = value;
-    if (p.has(half_compression)) p[half_compression][0][slot] = value;
+    moment.compression.push_back(motions.of[k][2 * Dim]);
   }
-  prepare(s);
+  State<Dim, Real> s = state_of<Dim, Real>(scene, moment);
   s.clock.time = motions.time;
   return s;
 }
@@ -225,7 +219,7 @@ template <int Dim> Motions<Dim> prepared(const Scene& scene, const Start& rest) 
   if (count <= coarse_count * 11 / 10) {
     motions = from_rest<Dim>(scene, rest);
   } else {
-    const Scene coarse = scene_of<Dim>(coarse_count, usual_smoothing_ratio);
+    const Scene coarse = dam_break_scene<Dim>(coarse_count, usual_smoothing_ratio);
     const Start coarse_rest = fill_bodies(coarse, features_of(coarse));
     const Motions<Dim> moving = prepared<Dim>(coarse, coarse_rest);
     motions = settled(scene, rest, refined(CoarseField<Dim>(coarse_rest, moving), rest, moving.time));
@@ -237,11 +231,13 @@ template <int Dim> Motions<Dim> prepared(const Scene& scene, const Start& rest) 
 }  // namespace
 
 template <int Dim, class Real> State<Dim, Real> moving_dam_break(long long count, double smoothing_ratio) {
-  const Scene scene = scene_of<Dim>(count, smoothing_ratio);
+  const Scene scene = dam_break_scene<Dim>(count, smoothing_ratio);
   const Start rest = fill_bodies(scene, features_of(scene));
   return state_in_motion<Dim, Real>(scene, rest, prepared<Dim>(scene, rest));
 }
 
+template Scene dam_break_scene<2>(long long, double);
+template Scene dam_break_scene<3>(long long, double);
 template State<2, float> moving_dam_break(long long, double);
 template State<2, double> moving_dam_break(long long, double);
 template State<3, float> moving_dam_break(long long, double);

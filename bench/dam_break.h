@@ -12,9 +12,12 @@
 // how the solver stores particles, so that two builds can start from the same bits.
 #pragma once
 
+#include "core/scene.h"
 #include "core/state.h"
 
 namespace molten::bench {
+
+template <int Dim> Scene dam_break_scene(long long count, double smoothing_ratio);
 
 /// About `count` particles, h = `smoothing_ratio` spacings.
 template <int Dim, class Real> State<Dim, Real> moving_dam_break(long long count, double smoothing_ratio);

@@ -17,6 +17,7 @@
 #include "bench/cases.h"
 #include "bench/minimal.h"
 #include "bench/program.h"
+#include "bench/ratio.h"
 
 namespace molten::bench {
 namespace {
@@ -25,29 +26,12 @@ using S = State<3, float>;
 using Step = std::function<void(S&)>;
 constexpr int batch = 5;  // steps
 
-struct Ratio {
-  double median, low, high;
-};
-
-/// With 95 % confidence by order statistics, in the normal approximation of the binomial.
-Ratio ratio_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto n = static_cast<double>(values.size());
-  const auto margin = static_cast<std::size_t>(std::max(0.0, std::floor((n - 1.96 * std::sqrt(n)) / 2)));
-  return {values[values.size() / 2], values[margin], values[values.size() - 1 - margin]};
-}
-
 struct Result {
   std::string feature;
   double minimal, off, on;  // s a step, medians
   Ratio off_ratio, on_ratio;
 };
 std::vector<Result> results;
-
-double median(std::vector<double> v) {
-  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
 
 /// The largest difference of any particle's position after the same steps, in spacings.
 double apart(const S& a, const S& b) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "core/particles.h"
@@ -29,6 +30,10 @@ class FreeWay {
   bool within(std::uint8_t part, std::size_t slot) const { return (parts_[slot / 2] >> slot % 2 * 4 & 15) <= part; }
   /// For any of a cluster.
   bool any_within(std::uint8_t part, std::size_t cluster) const {
+    std::uint16_t all;  // far from walls, as most are
+    static_assert(sizeof all == cluster_size / 2);
+    std::memcpy(&all, &parts_[cluster * sizeof all], sizeof all);
+    if (all == 0xffff) return false;
     bool any = false;
     for (int n = 0; n < cluster_size; ++n) any |= within(part, cluster * cluster_size + n);
     return any;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/boundary/near_walls.h"
 #include "core/diagnostics.h"
 #include "core/error.h"
 #include "core/particle_pass.h"
@@ -103,19 +104,16 @@ template <int Dim, class Real> void look_for_walls(State<Dim, Real>& s) {
   if (!s.features.contact) return;
   s.free_way.reset(s.particles.slots());
   if (s.features.bodies) s.bodies.place(s.contact);
-  const auto x = s.particles[position];
-  const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
-  const double spacing = s.parameters.spacing;
-  for_each_slot(s.neighbours.clusters() - first, [&](std::size_t k) {
-    const std::size_t begin = (first + k) * cluster_size;
-    for (std::size_t slot = begin; slot < begin + cluster_size; ++slot) {
-      if (s.particles.is_padding(slot)) continue;
-      Point<Dim> point;
-      for (int d = 0; d < Dim; ++d) point[d] = x[d][slot];
-      s.free_way.set(slot, s.contact.free_way(point, FreeWay::longest * spacing) / spacing);
-    }
+  const double spacing = s.parameters.spacing, longest = FreeWay::longest * spacing;
+  const std::size_t first = s.neighbours.first_slot(Block::active);
+  for_each_near_walls(s.particles, s.contact, first, longest, [&](std::size_t cluster) {
+    const std::size_t slot = cluster * cluster_size;
+    for_each_place(s.particles, slot, slot + cluster_size, [&](std::size_t k, const Point<Dim>& x) {
+      s.free_way.set(k, s.contact.free_way(x, longest) / spacing);
+    });
   });
-  if (s.features.wall_support) s.wall_support.mark(s.particles, s.neighbours.first_slot(Block::warm), s.bodies);
+  if (s.features.wall_support)
+    s.wall_support.mark(s.particles, s.neighbours.first_slot(Block::warm), s.bodies, s.contact);
 }
 
 template <int Dim, class Real> void require_sane(const State<Dim, Real>& s) {

@@ -465,5 +465,25 @@ TEST(Contact, AbsurdlyFastIsHeld) {
   }
 }
 
+/// No particle in a box may touch a wall that the box did not hear of; the same by grid and by tree.
+TEST(Contact, BoxHearsOfWallsNearItsPoints) {
+  for (const SearchMethod method : {SearchMethod::grid, SearchMethod::tree}) {
+    Random<3> random(31);
+    const double radius = 0.05;
+    const Contact<3> contact({contact_test::box(1, true), contact_test::plane<3>({0, 0, 3}, {0, 0, -1})}, radius, 0.3,
+                             method);
+    int none = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Point<3> middle = random.point(3), half = random.point().cwiseAbs() * 0.3;
+      const double reach = random.scale(0.01, 0.3);
+      if (contact.may_touch_in(middle - half, middle + half, reach)) continue;
+      ++none;
+      const Point<3> x = middle + half.cwiseProduct(random.point());
+      ASSERT_GE(std::abs(contact.signed_distance(x, 1)), radius + reach);
+    }
+    EXPECT_GT(none, 500);
+  }
+}
+
 }  // namespace
 }  // namespace molten

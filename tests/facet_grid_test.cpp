@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "core/boundary/facet_sides.h"
 #include "tests/contact_shapes.h"
 
 namespace molten {
@@ -51,6 +52,87 @@ template <int Dim> void lists_all_near() {
 TEST(FacetGrid, ListsAllThatIsNear) {
   lists_all_near<2>();
   lists_all_near<3>();
+}
+
+template <int Dim> void hears_of_boxes() {
+  Random<Dim> random(12);
+  const auto facets = soup<Dim>(random, 60);
+  const double margin = 0.2;
+  const FacetGrid<Dim> grid(facets, margin, 0.5);
+  int none = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Point<Dim> middle = random.point(9), half = random.point().cwiseAbs() * random.scale(0.01, 3);
+    const bool any = grid.any_in_box(middle - half, middle + half);
+    none += !any;
+    for (int k = 0; k < 5 && !any; ++k) {
+      const Point<Dim> x = middle + half.cwiseProduct(random.point());
+      for (const auto& f : facets) ASSERT_GE(nearest_point<Dim>(f, x).distance, margin);
+    }
+  }
+  EXPECT_GT(none, 500);
+}
+
+TEST(FacetGrid, AnyInABoxIsHeardOf) {
+  hears_of_boxes<2>();
+  hears_of_boxes<3>();
+}
+
+template <int Dim> void one_list_has_all() {
+  Random<Dim> random(13);
+  const auto facets = soup<Dim>(random, 60);
+  const double margin = 0.2;
+  const FacetGrid<Dim> grid(facets, margin, 0.5);
+  int known = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Point<Dim> x = random.point(6);
+    const double reach = random.scale(0.001, 0.5);
+    const auto list = grid.near_all(x, reach);
+    if (!list) continue;
+    ++known;
+    for (int f = 0; f < 60; ++f)
+      ASSERT_TRUE(nearest_point<Dim>(facets[f], x).distance >= margin + reach ||
+                  std::count(list->begin(), list->end(), f));
+  }
+  EXPECT_GT(known, 1000);
+}
+
+TEST(FacetGrid, OneListHasAllOnAShortWay) {
+  one_list_has_all<2>();
+  one_list_has_all<3>();
+}
+
+/// Never further than it is, the same where the point is over the inside, and seldom nearer elsewhere.
+template <int Dim> void sides_tell() {
+  Random<Dim> random(14);
+  int further = 0, told = 0, over = 0;
+  for (int i = 0; i < 50000; ++i) {
+    const Facet<Dim> facet = make_facet<Dim>(small_facet(random, random.point(2), random.scale(0.1, 5)));
+    const Point<Dim> x = random.point(3);
+    const auto nearest = nearest_point<Dim>(facet, x);
+    const auto at = FacetSides<Dim>(facet).at(x);
+    const double distance = random.scale(0.01, 5);
+    ASSERT_FALSE(at.further_than(distance) && nearest.distance < distance - 1e-12);
+    if (at.inside > 1e-12) {
+      ASSERT_EQ(nearest.feature, Feature::face);
+      ASSERT_NEAR(nearest.distance, std::abs(at.height), 1e-12);
+      ++over;
+    }
+    further += nearest.distance > distance;
+    told += at.further_than(distance);
+  }
+  EXPECT_GT(told, 0.95 * further);
+  EXPECT_GT(over, 500);
+}
+
+TEST(FacetSides, NeverTellOfMoreRoomThanThereIs) {
+  sides_tell<2>();
+  sides_tell<3>();
+}
+
+TEST(FacetSides, FacetWithoutAreaIsNeverFarther) {
+  const Point<3> a(1, 2, 3), b(2, 4, 6);
+  const FacetSides<3> sides(make_facet<3>({a, b, Point<3>(a + 3 * (b - a))}));
+  EXPECT_FALSE(sides.at(Point<3>(50, 0, 0)).further_than(1));
 }
 
 /// The box test against points spread over the facet: never apart where a point is inside, and sharp.

@@ -66,7 +66,8 @@ template <int Dim> struct Contact<Dim>::Impl {
   bool near_body(const Group& group, const Point<Dim>& x, double reach, double dt) const;
   bool near_wall(const Point<Dim>& x, double reach, double dt) const;
   int move(Motion<Dim>& motion, double dt, std::span<Kick<Dim>> kicks) const;
-  Meeting first_contact(const Point<Dim>& x, const Point<Dim>& d, double r, double from, double to) const;
+  Meeting first_contact(const Point<Dim>& x, const Point<Dim>& d, double r, double from, double to,
+                        const FewFacets& few = {}) const;
   NearestWall<Dim> nearest_held(const Point<Dim>& x) const;
   NearestWall<Dim> nearest_any(const Point<Dim>& x, double limit) const;
   double settle(Point<Dim>& x) const;
@@ -116,8 +117,9 @@ template <int Dim> bool Contact<Dim>::Impl::near_wall(const Point<Dim>& x, doubl
 
 template <int Dim>
 typename Contact<Dim>::Impl::Meeting Contact<Dim>::Impl::first_contact(const Point<Dim>& x, const Point<Dim>& d,
-                                                                       double r, double from, double to) const {
-  Meeting first{fixed.search->first_contact(x, d, r), &fixed, d, x};
+                                                                       double r, double from, double to,
+                                                                       const FewFacets& few) const {
+  Meeting first{fixed.search->first_contact(x, d, r, few), &fixed, d, x};
   for (const Group& group : bodies) {
     if (!near_body(group, x, d.norm(), to)) continue;
     const Point<Dim> start = group.motion.after(from).to_body(x), end = group.motion.after(to).to_body(x + d);
@@ -179,17 +181,25 @@ template <int Dim> double Contact<Dim>::Impl::settle(Point<Dim>& x) const {
 template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt, std::span<Kick<Dim>> kicks) const {
   const Point<Dim> whole = dt * m.rate;
   const double reach = whole.norm();
-  if (!(reach < absurd) || !m.position.allFinite() || !near_wall(m.position, reach, dt)) {
+  if (!(reach < absurd) || !m.position.allFinite()) {
     m.position += whole;
     return 0;
   }
-  const double r = settle(m.position);
+  // Its way and the gaps that contacts leave; bounces do not make it longer, unless it gets faster.
+  const double all = (1 + 1e-9) * reach + (most_bounces + 1) * skin, speed2 = m.rate.squaredNorm();
+  FewFacets few = bodies.empty() ? fixed.search->few_within(m.position, all) : FewFacets();
+  if (!few.known() && !near_wall(m.position, reach, dt)) {
+    m.position += whole;
+    return 0;
+  }
+  double r = radius;
+  if (!few.known() || fixed.search->nearest_held(m.position, few).rank >= 0) few.forget(), r = settle(m.position);
   Touching<Dim> touching;
   double now = 0;  // s since the start of the step
   for (int bounces = 0; bounces < most_bounces; ++bounces) {
     const Point<Dim> d = (dt - now) * m.rate;
     if (d.isZero(0) && bodies.empty()) return bounces;
-    const Meeting hit = first_contact(m.position, d, r, now, dt);
+    const Meeting hit = first_contact(m.position, d, r, now, dt, few);
     if (hit.contact.rank < 0) {
       m.position += d;
       return bounces;
@@ -221,6 +231,7 @@ template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt, std::
       kicks[by.body].angular += moment_of(arm, gain);
     });
     touching.respond(m.rate, held, [](const Touch<Dim>&, const Point<Dim>&) {});
+    if (m.rate.squaredNorm() > (1 + 1e-9) * speed2) few.forget();
   }
   // A body goes on and takes along what it touched last.
   if (const std::int32_t body = touching.last().body; body >= 0) {
@@ -259,6 +270,16 @@ template <int Dim> int Contact<Dim>::move(Motion<Dim>& motion, double dt, std::s
 
 template <int Dim> bool Contact<Dim>::may_touch(const Point<Dim>& x, double reach) const {
   return impl_->near_wall(x, reach, 0);
+}
+
+template <int Dim>
+bool Contact<Dim>::may_touch_in(const Point<Dim>& lower, const Point<Dim>& upper, double reach) const {
+  if (impl_->fixed.search->any_within(lower, upper, reach)) return true;
+  const Point<Dim> middle = (lower + upper) / 2;
+  const double all = reach + (upper - lower).norm() / 2;
+  for (const auto& group : impl_->bodies)
+    if (impl_->near_body(group, middle, all, 0)) return true;
+  return false;
 }
 
 template <int Dim> double Contact<Dim>::free_way(const Point<Dim>& x, double limit) const {

@@ -111,6 +111,9 @@ template <int Dim> class Contact {
   /// Bodies count where their motion starts; their own way is part of the reach.
   bool may_touch(const Point<Dim>& x, double reach) const;
 
+  /// The same for all x in the box lower..upper at once.
+  bool may_touch_in(const Point<Dim>& lower, const Point<Dim>& upper, double reach) const;
+
   /// How far (m) a particle at x may go, or a body come, before they can meet; up to `limit`. A little less than exact.
   double free_way(const Point<Dim>& x, double limit) const;
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,8 +37,14 @@ template <int Dim> class FacetGrid {
   /// The facets within the margin of x, and some more; in rising order.
   std::span<const std::int32_t> near(const Point<Dim>& x) const;
 
+  /// The facets within the margin of any point within `reach` (m) of x, and some more; none if one list does not hold
+  /// them.
+  std::optional<std::span<const std::int32_t>> near_all(const Point<Dim>& x, double reach) const;
+
   /// False only if no point within `reach` (m) of x has a facet within the margin. One look-up when reach is small.
   bool any_within(const Point<Dim>& x, double reach) const;
+  /// False only if no point of the box lower..upper has a facet within the margin.
+  bool any_in_box(const Point<Dim>& lower, const Point<Dim>& upper) const;
 
   /// Calls visit(facets, t) for the cells that the straight path x → x + d passes, in order; t is the fraction of the
   /// path at which it leaves the cell. Ends when visit returns false. A cell that is cut by no more than round-off may
@@ -65,6 +72,9 @@ template <int Dim> class FacetGrid {
   std::int32_t cell_of(double x, int axis) const;
   Index cell_of(const Point<Dim>& x) const;
   bool inside(const Point<Dim>& x) const;
+  bool misses(const Point<Dim>& lower, const Point<Dim>& upper) const {
+    return (upper.array() < origin_.array()).any() || (lower.array() > end_.array()).any();
+  }
   std::int64_t brick_slot(const Index& cell) const;
   static int slot_in_brick(const Index& cell);
   std::span<const std::int32_t> list(const Index& cell) const;
@@ -122,12 +132,23 @@ template <int Dim> inline std::span<const std::int32_t> FacetGrid<Dim>::near(con
   return inside(x) ? list(cell_of(x)) : std::span<const std::int32_t>();
 }
 
-template <int Dim> inline bool FacetGrid<Dim>::any_within(const Point<Dim>& x, double reach) const {
-  if (brick_.empty()) return false;
-  for (int k = 0; k < Dim; ++k)
-    if (x[k] + reach < origin_[k] || x[k] - reach > end_[k]) return false;
+template <int Dim>
+inline std::optional<std::span<const std::int32_t>> FacetGrid<Dim>::near_all(const Point<Dim>& x, double reach) const {
   const Point<Dim> r = Point<Dim>::Constant(reach);
+  if (brick_.empty() || misses(x - r, x + r)) return std::span<const std::int32_t>();
   const Index lo = cell_of(Point<Dim>(x - r)), hi = cell_of(Point<Dim>(x + r));
+  if (lo != hi) return std::nullopt;
+  return list(lo);
+}
+
+template <int Dim> inline bool FacetGrid<Dim>::any_within(const Point<Dim>& x, double reach) const {
+  const Point<Dim> r = Point<Dim>::Constant(reach);
+  return any_in_box(x - r, x + r);
+}
+
+template <int Dim> inline bool FacetGrid<Dim>::any_in_box(const Point<Dim>& lower, const Point<Dim>& upper) const {
+  if (brick_.empty() || misses(lower, upper)) return false;
+  const Index lo = cell_of(lower), hi = cell_of(upper);
   return lo == hi ? used(lo) : any_in(lo, hi);
 }
 

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t huge_mesh = 1000000;  // facets; the grid's lists would take more room than the mesh
 constexpr double crowded_list = 64;         // facets in the mean list: the grid's cells are far larger than the facets
 constexpr double long_path = 0.5;           // cells
+constexpr double round_off = 1e-14;         // relative to the largest coordinate
 
 }  // namespace
 
@@ -33,6 +34,11 @@ SurfaceSearch<Dim>::SurfaceSearch(const std::vector<Wall<Dim>>& walls, double ra
     grid_ = {};
   }
   if (surface_.facets().empty()) tree_alone_ = false;
+  if (!tree_alone_) {
+    sides_.reserve(surface_.facets().size());
+    for (const auto& facet : surface_.facets()) sides_.emplace_back(facet);
+  }
+  side_slack_ = round_off * surface_.extent();
   longest_in_grid_ = method == SearchMethod::grid ? HUGE_VAL : long_path * grid_.cell();
 }
 
@@ -62,15 +68,29 @@ template <int Dim> bool SurfaceSearch<Dim>::any_within(const Point<Dim>& x, doub
   return any;
 }
 
+template <int Dim>
+bool SurfaceSearch<Dim>::any_within(const Point<Dim>& lower, const Point<Dim>& upper, double reach) const {
+  const Point<Dim> middle = (lower + upper) / 2, half = (upper - lower) / 2;
+  for (const Plane& p : planes_) {
+    const double away = std::abs(p.normal.dot(middle - p.point)) - p.normal.cwiseAbs().dot(half);
+    if (away <= reach + radius_ + 4 * skin_) return true;
+  }
+  const Point<Dim> around = Point<Dim>::Constant(reach);
+  if (!tree_alone_) return grid_.any_in_box(lower - around, upper + around);
+  bool any = false;
+  tree().near(middle, reach + half.norm(), [&](std::int32_t) { return !(any = true); });
+  return any;
+}
+
 // ---- the first contact ----------------------------------------------------------------------------------------------
 
 template <int Dim>
 void SurfaceSearch<Dim>::meet_facet(FirstContact<Dim>& first, std::int32_t facet, const Point<Dim>& x,
-                                    const Point<Dim>& d, double r) const {
+                                    const Point<Dim>& d, double r, bool inside) const {
   const Facet<Dim>& f = surface_.facets()[facet];
   const double height = f.normal.dot(x - f.corner[0]);
   if (misses_slab(height, -f.normal.dot(d), r)) return;
-  const auto hit = sweep_facet(f, x, d, r);
+  const auto hit = sweep_facet(f, x, d, r, inside);
   if (!hit) return;
   // The centre has settled in front of all walls, so a face that holds from behind is the back of a thin plate.
   if (hit->feature == Feature::face && height < -r / 2) return;
@@ -99,11 +119,30 @@ void SurfaceSearch<Dim>::meet_planes(FirstContact<Dim>& first, const Point<Dim>&
   }
 }
 
+template <int Dim> FewFacets SurfaceSearch<Dim>::few_within(const Point<Dim>& x, double reach) const {
+  FewFacets few;
+  if (tree_alone_) return few;
+  const auto near = grid_.near_all(x, reach);
+  if (!near) return few;
+  few.count = 0;
+  for (const std::int32_t facet : *near) {
+    const auto at = sides_[facet].at(x);
+    if (at.further_than(radius_ + reach + side_slack_)) continue;
+    if (few.count == FewFacets::most) return {};
+    few.facet[few.count++] = facet;
+    few.inside = few.count == 1 && at.inside > reach + side_slack_;
+  }
+  return few;
+}
+
 template <int Dim>
-FirstContact<Dim> SurfaceSearch<Dim>::first_contact(const Point<Dim>& x, const Point<Dim>& d, double r) const {
+FirstContact<Dim> SurfaceSearch<Dim>::first_contact(const Point<Dim>& x, const Point<Dim>& d, double r,
+                                                    const FewFacets& few) const {
   FirstContact<Dim> first;
   meet_planes(first, x, d, r);
-  if (tree_alone_ || is_long(d))
+  if (few.known())
+    for (const std::int32_t facet : few.list()) meet_facet(first, facet, x, d, r, few.inside);
+  else if (tree_alone_ || is_long(d))
     tree().sweep(x, d, [&](std::int32_t facet) {
       meet_facet(first, facet, x, d, r);
       return first.key;
@@ -149,10 +188,12 @@ void SurfaceSearch<Dim>::come_near_planes(NearestWall<Dim>& best, const Point<Di
   }
 }
 
-template <int Dim> NearestWall<Dim> SurfaceSearch<Dim>::nearest_held(const Point<Dim>& x) const {
+template <int Dim> NearestWall<Dim> SurfaceSearch<Dim>::nearest_held(const Point<Dim>& x, const FewFacets& few) const {
   NearestWall<Dim> best;
   come_near_planes(best, x, radius_);
-  if (tree_alone_)
+  if (few.known())
+    for (const std::int32_t facet : few.list()) come_near(best, facet, x, radius_, false);
+  else if (tree_alone_)
     tree().near(x, 0, [&](std::int32_t facet) {
       come_near(best, facet, x, radius_, false);
       return true;
@@ -165,7 +206,7 @@ template <int Dim> NearestWall<Dim> SurfaceSearch<Dim>::nearest_held(const Point
 template <int Dim> NearestWall<Dim> SurfaceSearch<Dim>::nearest_any(const Point<Dim>& x, double limit) const {
   NearestWall<Dim> best;
   come_near_planes(best, x, limit);
-  const Point<Dim> reach = Point<Dim>::Constant(limit);
+  const Point<Dim> reach = Point<Dim>::Constant(std::max(0.0, limit - radius_));  // a cell lists what is a radius away
   if (tree_alone_)
     tree().near(x, limit, [&](std::int32_t facet) {
       come_near(best, facet, x, limit, true);

@@ -3,12 +3,16 @@
 // huge meshes and walls that are crowded somewhere in a large space (facet_grid.h, facet_tree.h).
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "core/boundary/contact.h"
 #include "core/boundary/facet_grid.h"
+#include "core/boundary/facet_sides.h"
 #include "core/boundary/facet_tree.h"
 #include "core/boundary/wall_surface.h"
 
@@ -30,6 +34,18 @@ template <int Dim> struct NearestWall {
   Point<Dim> point = Point<Dim>::Zero(), normal = Point<Dim>::Zero();
 };
 
+/// The facets that can matter to a sphere on a short way, so that they are looked for once.
+struct FewFacets {
+  static constexpr int most = 4;
+  std::array<std::int32_t, most> facet{};
+  int count = -1;       // −1: more, or not known
+  bool inside = false;  // only one, and the sphere stays over its inside
+
+  bool known() const { return count >= 0; }
+  void forget() { count = -1; }
+  std::span<const std::int32_t> list() const { return {facet.data(), static_cast<std::size_t>(std::max(count, 0))}; }
+};
+
 template <int Dim> class SurfaceSearch {
  public:
   /// `radius` (m) of the spheres, `skin` (m) the gap that a contact leaves, `cell` (m) of the grid that is wanted.
@@ -43,12 +59,18 @@ template <int Dim> class SurfaceSearch {
 
   /// False only if no wall can be met within `reach` (m) of x beyond the radius.
   bool any_within(const Point<Dim>& x, double reach) const;
+  /// The same for all x in the box lower..upper.
+  bool any_within(const Point<Dim>& lower, const Point<Dim>& upper, double reach) const;
 
-  /// What a sphere of radius r (m), at most that of the construction, meets first on its way from x to x + d.
-  FirstContact<Dim> first_contact(const Point<Dim>& x, const Point<Dim>& d, double r) const;
+  /// The facets within a radius of any place within `reach` (m) of x.
+  FewFacets few_within(const Point<Dim>& x, double reach) const;
+
+  /// What a sphere of radius r (m), at most that of the construction, meets first on its way from x to x + d. `few`:
+  /// where they are known for all of the way, only they are looked at.
+  FirstContact<Dim> first_contact(const Point<Dim>& x, const Point<Dim>& d, double r, const FewFacets& few = {}) const;
 
   /// The nearest wall within a radius that holds a particle at x: behind an open wall's rim nothing holds it.
-  NearestWall<Dim> nearest_held(const Point<Dim>& x) const;
+  NearestWall<Dim> nearest_held(const Point<Dim>& x, const FewFacets& few = {}) const;
 
   /// The nearest wall within `limit` (m) of x.
   NearestWall<Dim> nearest_any(const Point<Dim>& x, double limit) const;
@@ -62,8 +84,8 @@ template <int Dim> class SurfaceSearch {
   const FacetTree<Dim>& tree() const;
   bool is_long(const Point<Dim>& d) const;
   void meet_planes(FirstContact<Dim>& first, const Point<Dim>& x, const Point<Dim>& d, double r) const;
-  void meet_facet(FirstContact<Dim>& first, std::int32_t facet, const Point<Dim>& x, const Point<Dim>& d,
-                  double r) const;
+  void meet_facet(FirstContact<Dim>& first, std::int32_t facet, const Point<Dim>& x, const Point<Dim>& d, double r,
+                  bool inside = false) const;
   void come_near(NearestWall<Dim>& best, std::int32_t facet, const Point<Dim>& x, double limit, bool past_rims) const;
   void come_near_planes(NearestWall<Dim>& best, const Point<Dim>& x, double limit) const;
 
@@ -73,7 +95,9 @@ template <int Dim> class SurfaceSearch {
   bool tree_alone_ = false;     // no grid
   double longest_in_grid_ = 0;  // m; longer paths go through the tree
   FacetGrid<Dim> grid_;
-  mutable std::once_flag planted_;  // the tree grows when it is first wanted
+  std::vector<FacetSides<Dim>> sides_;  // with the grid
+  double side_slack_ = 0;               // m
+  mutable std::once_flag planted_;      // the tree grows when it is first wanted
   mutable std::unique_ptr<FacetTree<Dim>> tree_;
 };
 

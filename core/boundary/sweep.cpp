@@ -42,18 +42,21 @@ bool covers(const Facet<3>& f, const Point<3>& x) {
   return true;
 }
 
-/// Does all of the path stay further than `radius` beyond one end or edge of the facet? A cheap test for most.
-bool passes_beside(const Facet<2>& f, const Point<2>& x, const Point<2>& d, double radius) {
+/// Does all of the path, which keeps at least `height` from the facet's plane, stay further than `radius` beyond one
+/// end or edge of the facet? A cheap test for most.
+bool passes_beside(const Facet<2>& f, const Point<2>& x, const Point<2>& d, double height, double radius) {
   const Point<2> e = f.corner[1] - f.corner[0];
-  const double length = e.norm(), s = e.dot(x - f.corner[0]), end = s + e.dot(d);
-  return std::max(s, end) < -radius * length || std::min(s, end) > (length + radius) * length;
+  const double s = e.dot(x - f.corner[0]), end = s + e.dot(d), length2 = e.squaredNorm();
+  const double beyond = std::max(-std::max(s, end), std::min(s, end) - length2);  // the end, × length
+  return beyond > 0 && beyond * beyond > (radius * radius - height * height) * length2;
 }
 
-bool passes_beside(const Facet<3>& f, const Point<3>& x, const Point<3>& d, double radius) {
+bool passes_beside(const Facet<3>& f, const Point<3>& x, const Point<3>& d, double height, double radius) {
+  const double room2 = radius * radius - height * height;
   for (int k = 0; k < 3; ++k) {
     const Point<3>&a = f.corner[k], e = f.corner[(k + 1) % 3] - a, inwards = f.normal.cross(e);
     const double s = inwards.dot(x - a), inmost = std::max(s, s + inwards.dot(d));
-    if (inmost < 0 && inmost * inmost > radius * radius * e.squaredNorm()) return true;
+    if (inmost < 0 && inmost * inmost > room2 * e.squaredNorm()) return true;
   }
   return false;
 }
@@ -171,16 +174,20 @@ template <int Dim> NearestPoint<Dim> nearest_point(const Facet<Dim>& f, const Po
 }
 
 template <int Dim> bool further_than(const Facet<Dim>& f, const Point<Dim>& x, double distance) {
-  return std::abs(f.normal.dot(x - f.corner[0])) > distance || passes_beside(f, x, Point<Dim>::Zero(), distance);
+  const double height = std::abs(f.normal.dot(x - f.corner[0]));
+  return height > distance || passes_beside(f, x, Point<Dim>::Zero(), height, distance);
 }
 
 template <int Dim>
-std::optional<SweepHit<Dim>> sweep_facet(const Facet<Dim>& f, const Point<Dim>& x, const Point<Dim>& d, double radius) {
-  const double height = f.normal.dot(x - f.corner[0]), descent = -f.normal.dot(d);
-  if (misses_slab(height, descent, radius) || d.isZero(0) || passes_beside(f, x, d, radius)) return {};
+std::optional<SweepHit<Dim>> sweep_facet(const Facet<Dim>& f, const Point<Dim>& x, const Point<Dim>& d, double radius,
+                                         bool inside) {
+  const double height = f.normal.dot(x - f.corner[0]), descent = -f.normal.dot(d), end = height - descent;
+  if (misses_slab(height, descent, radius) || d.isZero(0)) return {};
+  const double least = height * end > 0 ? std::min(std::abs(height), std::abs(end)) : 0;
+  if (!inside && passes_beside(f, x, d, least, radius)) return {};
   if (std::abs(height) > radius) {  // so it nears: the plane is met before any edge, and counts if over the inside
     const double t = std::min((std::abs(height) - radius) / std::abs(descent), 1.0);
-    if (covers(f, Point<Dim>(x + t * d))) {
+    if (inside || covers(f, Point<Dim>(x + t * d))) {
       if (height < 0) return {};
       return SweepHit<Dim>{t, f.normal, Feature::face, 0};
     }
@@ -210,7 +217,7 @@ std::optional<SweepHit<Dim>> sweep_plane(const Point<Dim>& point, const Point<Di
   template NearestPoint<Dim> nearest_point<Dim>(const Facet<Dim>&, const Point<Dim>&);                            \
   template bool further_than<Dim>(const Facet<Dim>&, const Point<Dim>&, double);                                  \
   template std::optional<SweepHit<Dim>> sweep_facet<Dim>(const Facet<Dim>&, const Point<Dim>&, const Point<Dim>&, \
-                                                         double);                                                 \
+                                                         double, bool);                                           \
   template std::optional<SweepHit<Dim>> sweep_plane<Dim>(const Point<Dim>&, const Point<Dim>&, const Point<Dim>&, \
                                                          const Point<Dim>&, double);
 MOLTEN_SWEEP(2)

@@ -60,10 +60,10 @@ inline bool misses_slab(double height, double descent, double radius) {
 
 /// The sphere at x moves by d (m). A contact is where it first touches the facet with its centre on the front side; an
 /// overlap at the start that is approaching is a contact at t = 0, also when the centre is behind the face by up to one
-/// radius.
+/// radius. `inside`: all of the way is known to be over the facet's inside.
 template <int Dim>
 std::optional<SweepHit<Dim>> sweep_facet(const Facet<Dim>& facet, const Point<Dim>& x, const Point<Dim>& d,
-                                         double radius);
+                                         double radius, bool inside = false);
 
 /// The same for the infinite plane through `point` with the unit normal `normal`.
 template <int Dim>

@@ -11,9 +11,9 @@
 namespace molten {
 
 template <int Dim> struct Touch {
-  Point<Dim> normal = Point<Dim>::Zero(), velocity = Point<Dim>::Zero();  // -, m/s; of the wall
-  const Response* response = nullptr;
-  std::int32_t body = -1;
+  Point<Dim> normal, velocity;  // -, m/s; of the wall
+  const Response* response;
+  std::int32_t body;
 };
 
 template <int Dim> class Touching {

@@ -423,7 +423,7 @@ template <int Dim> std::int32_t WallIntegrals<Dim>::plane_near(const Point<Dim>&
     const bool ends = distance(sheet, x, true) < reach;
     found = ends || (found != no_plane && found != sheet.plane) ? many_planes : sheet.plane;
   };
-  const Point<Dim> span = Point<Dim>::Constant(reach);
+  const Point<Dim> span = Point<Dim>::Constant(std::max(0.0, reach - radial_.reach()));  // a cell lists what it reaches
   grid_.visit_box(x - span, x + span, [&](std::span<const std::int32_t> near) {
     for (std::size_t n = 0; n < near.size() && found != many_planes; ++n) {
       const Clump& clump = clumps_[near[n]];

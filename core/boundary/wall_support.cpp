@@ -1,5 +1,6 @@
 #include "core/boundary/wall_support.h"
 
+#include "core/boundary/near_walls.h"
 #include "core/particle_pass.h"
 
 namespace molten {
@@ -40,31 +41,32 @@ template <int Dim> void WallSupport<Dim>::place(const Bodies<Dim>& bodies) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].motion = bodies.motion(k);
 }
 
-template <int Dim> std::int32_t WallSupport<Dim>::plane_near(const Point<Dim>& x) const {
+template <int Dim> std::int32_t WallSupport<Dim>::plane_near(const Point<Dim>& x, double reach) const {
   for (const Moving& body : bodies_)
-    if (body.is_near(x, reach_) && body.integrals->plane_near(body.motion.start.to_body(x), reach_) != no_plane)
+    if (body.is_near(x, reach) && body.integrals->plane_near(body.motion.start.to_body(x), reach) != no_plane)
       return many_planes;
-  return integrals_->plane_near(x, reach_);
+  return integrals_->plane_near(x, reach);
 }
 
 template <int Dim>
 template <class Real>
-void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t first_slot, const Bodies<Dim>& bodies) {
+void WallSupport<Dim>::mark(const Particles<Dim, Real>& particles, std::size_t first_slot, const Bodies<Dim>& bodies,
+                            const Contact<Dim>& contact) {
   place(bodies);
-  const std::size_t clusters = particles.slots() / cluster_size;
-  plane_.assign(clusters, no_plane);
-  const auto x = particles[position];
-  const std::size_t first = first_slot / cluster_size;
-  for_each_slot(clusters - first, [&](std::size_t n) {
-    const std::size_t c = first + n;
-    for (std::size_t slot = c * cluster_size; slot < (c + 1) * cluster_size; ++slot) {
-      if (particles.is_padding(slot)) continue;
-      Point<Dim> point;
-      for (int k = 0; k < Dim; ++k) point[k] = x[k][slot];
-      const std::int32_t plane = plane_near(point);
-      if (plane == no_plane) continue;
-      plane_[c] = plane_[c] == no_plane || plane_[c] == plane ? plane : many_planes;
-    }
+  plane_.assign(particles.slots() / cluster_size, no_plane);
+  for_each_near_walls(particles, contact, first_slot, reach_, [&](std::size_t cluster) {
+    const std::size_t slot = cluster * cluster_size;
+    const PlacesBox<Dim> box(particles, slot, slot + cluster_size);
+    if (box.empty()) return;
+    std::int32_t& marked = plane_[cluster];
+    marked = plane_near((box.lower + box.upper) / 2, reach_ + (box.upper - box.lower).norm() / 2);
+    if (marked != many_planes) return;
+    marked = no_plane;
+    for_each_place(particles, slot, slot + cluster_size, [&](std::size_t, const Point<Dim>& x) {
+      if (marked == many_planes) return;
+      const std::int32_t plane = plane_near(x, reach_);
+      if (plane != no_plane) marked = marked == no_plane || marked == plane ? plane : many_planes;
+    });
   });
 }
 
@@ -101,8 +103,9 @@ template <int Dim> std::size_t WallSupport<Dim>::bytes() const {
 
 template class WallSupport<2>;
 template class WallSupport<3>;
-#define MOLTEN_INSTANTIATE(Dim, Real)                                                                 \
-  template void WallSupport<Dim>::mark(const Particles<Dim, Real>&, std::size_t, const Bodies<Dim>&); \
+#define MOLTEN_INSTANTIATE(Dim, Real)                                                                \
+  template void WallSupport<Dim>::mark(const Particles<Dim, Real>&, std::size_t, const Bodies<Dim>&, \
+                                       const Contact<Dim>&);                                         \
   template void WallSupport<Dim>::find_patches(const Particles<Dim, Real>&, std::size_t);
 MOLTEN_INSTANTIATE(2, float)
 MOLTEN_INSTANTIATE(2, double)

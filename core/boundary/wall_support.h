@@ -22,9 +22,10 @@ template <int Dim> class WallSupport {
   WallSupport(const Contact<Dim>& contact, const Bodies<Dim>& bodies, const Parameters<Dim>& parameters);
 
   /// Finds the planes near the particles from `first_slot` on; the others are not asked for. Good until the particles
-  /// have moved by half a skin, or the bodies have.
+  /// have moved by half a skin, or the bodies have. `contact`: with the same walls, the bodies where they are.
   template <class Real>
-  void mark(const Particles<Dim, Real>& particles, std::size_t first_slot, const Bodies<Dim>& bodies);
+  void mark(const Particles<Dim, Real>& particles, std::size_t first_slot, const Bodies<Dim>& bodies,
+            const Contact<Dim>& contact);
 
   /// Takes the walls of bodies to where those are.
   void place(const Bodies<Dim>& bodies);
@@ -72,7 +73,7 @@ template <int Dim> class WallSupport {
     bool is_near(const Point<Dim>& x, double reach) const { return (x - motion.start.centre).norm() < extent + reach; }
   };
   template <class Visit> void visit_all(const Point<Dim>& x, Visit&& visit) const;
-  std::int32_t plane_near(const Point<Dim>& x) const;
+  std::int32_t plane_near(const Point<Dim>& x, double reach) const;
 
   std::shared_ptr<const WallIntegrals<Dim>> integrals_;  // of the walls that stay in place
   std::vector<Moving> bodies_;

@@ -1,8 +1,8 @@
 #include "core/boundary/wall_surface.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -49,7 +49,7 @@ template <int Dim> WallSurface<Dim>::WallSurface(const std::vector<Wall<Dim>>& w
     if (walls[wall_[f]].two_sided) add_back(f);
   for (const auto& f : facets_)
     for (const auto& c : f.corner) extent_ = std::max(extent_, c.template lpNorm<Eigen::Infinity>());
-  join_vertices();
+  join_vertices(walls);
   if constexpr (Dim == 3) join_edges();
   sum_normals();
   mark_vertices();
@@ -80,25 +80,45 @@ template <int Dim> void WallSurface<Dim>::add_back(std::int32_t front) {
   wall_.push_back(wall_[front]);
 }
 
-template <int Dim> void WallSurface<Dim>::join_vertices() {
-  const auto corner = [&](std::int32_t c) -> const Point<Dim>& { return facets_[c / Dim].corner[c % Dim]; };
-  const auto is_back = [&](std::int32_t c) { return c / Dim >= first_back_; };
-  const auto before = [&](std::int32_t a, std::int32_t b) {
-    if (is_back(a) != is_back(b)) return is_back(b);
-    for (int k = 0; k < Dim; ++k)
-      if (corner(a)[k] != corner(b)[k]) return corner(a)[k] < corner(b)[k];
-    return false;
-  };
-  std::vector<std::int32_t> order(facets_.size() * Dim);
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), before);
-  vertex_.resize(facets_.size());
-  std::int32_t count = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i > 0 && before(order[i - 1], order[i])) ++count;
-    vertex_[order[i] / Dim][order[i] % Dim] = count;
+/// Of the walls' vertices that facets name, since these are far fewer than the facets' corners.
+template <int Dim> void WallSurface<Dim>::join_vertices(const std::vector<Wall<Dim>>& walls) {
+  std::vector<std::int32_t> first(walls.size() + 1, 0);  // of each wall's vertices
+  for (std::size_t w = 0; w < walls.size(); ++w)
+    first[w + 1] = first[w] + static_cast<std::int32_t>(walls[w].is_plane ? 0 : walls[w].vertices.size());
+  std::vector<const Point<Dim>*> place(first.back(), nullptr);  // null: no facet has it
+  vertex_.reserve(facets_.size());
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    if (walls[w].is_plane) continue;
+    for (const auto& f : walls[w].facets) {
+      auto& corners = vertex_.emplace_back();
+      for (int k = 0; k < Dim; ++k) {
+        corners[k] = first[w] + f[k];
+        place[corners[k]] = &walls[w].vertices[f[k]];
+      }
+    }
   }
-  vertex_normal_.assign(order.empty() ? 0 : count + 1, Point<Dim>::Zero());
+  std::vector<std::int32_t> order;
+  for (std::size_t v = 0; v < place.size(); ++v)
+    if (place[v]) order.push_back(static_cast<std::int32_t>(v));
+  const auto before = [&](std::int32_t a, std::int32_t b) {
+    return std::lexicographical_compare(place[a]->begin(), place[a]->end(), place[b]->begin(), place[b]->end());
+  };
+  std::sort(order.begin(), order.end(), before);
+  std::vector<std::int32_t> joined(place.size(), 0);
+  std::int32_t count = 0;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    joined[order[i]] = i > 0 && !before(order[i - 1], order[i]) ? count - 1 : count++;
+  for (auto& corners : vertex_)
+    for (std::int32_t& v : corners) v = joined[v];
+  for (std::int32_t f = 0; f < first_back_; ++f) {
+    if (!walls[wall_[f]].two_sided) continue;
+    auto corners = vertex_[f];
+    std::swap(corners[0], corners[1]);
+    for (std::int32_t& v : corners) v += count;
+    vertex_.push_back(corners);
+  }
+  const auto all = static_cast<std::size_t>(vertex_.size() > static_cast<std::size_t>(first_back_) ? 2 * count : count);
+  vertex_normal_.assign(all, Point<Dim>::Zero());
   vertex_crease_.assign(vertex_normal_.size(), Crease::smooth);
 }
 

@@ -40,7 +40,7 @@ template <int Dim> class WallSurface {
  private:
   void add(const Wall<Dim>& wall, std::int32_t index);
   void add_back(std::int32_t front);
-  void join_vertices();
+  void join_vertices(const std::vector<Wall<Dim>>& walls);
   void join_edges();
   void sum_normals();
   void mark_vertices();

@@ -57,8 +57,8 @@ void place(TriangleMesh& mesh, const MeshFile& file) {
 
 }  // namespace
 
-TriangleMesh placed_mesh(const Scene& scene, const MeshFile& file) {
-  TriangleMesh mesh = read_mesh(locate(scene, file.path));
+TriangleMesh placed_mesh(const Scene& scene, const MeshFile& file, const std::function<void()>& waiting) {
+  TriangleMesh mesh = read_mesh(locate(scene, file.path), waiting);
   place(mesh, file);
   return mesh;
 }
@@ -346,7 +346,12 @@ Repulsion<Dim> build_repulsion(const Scene& scene, const Start& start, const Par
 
 template <int Dim>
 Surroundings<Dim> build_surroundings(const Scene& scene, const Start& start, const Parameters<Dim>& p) {
-  std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
+  return build_surroundings(scene, start, p, build_walls<Dim>(scene, start.spacing));
+}
+
+template <int Dim>
+Surroundings<Dim> build_surroundings(const Scene& scene, const Start& start, const Parameters<Dim>& p,
+                                     std::vector<Wall<Dim>> walls) {
   Bodies<Dim> bodies = take_bodies(scene, walls);
   require_stable(scene, walls, bodies, start.spacing);
   std::vector<HeldPoint<Dim>> held = build_held(scene, start, p, walls);
@@ -361,6 +366,8 @@ Surroundings<Dim> build_surroundings(const Scene& scene, const Start& start, con
 
 template Surroundings<2> build_surroundings(const Scene&, const Start&, const Parameters<2>&);
 template Surroundings<3> build_surroundings(const Scene&, const Start&, const Parameters<3>&);
+template Surroundings<2> build_surroundings(const Scene&, const Start&, const Parameters<2>&, std::vector<Wall<2>>);
+template Surroundings<3> build_surroundings(const Scene&, const Start&, const Parameters<3>&, std::vector<Wall<3>>);
 template std::vector<Wall<2>> build_walls(const Scene&, double);
 template std::vector<Wall<3>> build_walls(const Scene&, double);
 

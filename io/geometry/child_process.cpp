@@ -79,15 +79,21 @@ bool write_all(int pipe, const char* data, std::size_t size) {
 }
 
 /// Reads until the child closes the pipe. False: too long or too much.
-bool read_all(int pipe, const ChildLimits& limits, std::string& bytes, std::string& failure) {
+bool read_all(int pipe, const ChildLimits& limits, const std::function<void()>& waiting, std::string& bytes,
+              std::string& failure) {
   using Clock = std::chrono::steady_clock;
   const auto deadline = Clock::now() + std::chrono::seconds(limits.seconds + spare_seconds);
   char buffer[65536];
   while (true) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     pollfd ready{pipe, POLLIN, 0};
-    const int polled = left > 0 ? poll(&ready, 1, static_cast<int>(left)) : 0;
+    const auto slice = static_cast<int>(std::min<long long>(left, 1000));
+    const int polled = left > 0 ? poll(&ready, 1, slice) : 0;
     if (polled < 0 && errno == EINTR) continue;
+    if (polled == 0 && left > slice) {
+      if (waiting) waiting();
+      continue;
+    }
     if (polled == 0) {
       failure = "it took more than " + std::to_string(limits.seconds) + " s";
       return false;
@@ -112,7 +118,8 @@ std::string why(int status, const ChildLimits& limits) {
 
 }  // namespace
 
-ChildAnswer run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
+ChildAnswer run_in_child(const std::function<std::string()>& work, const ChildLimits& limits,
+                         const std::function<void()>& waiting) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return {"", std::string("no pipe: ") + std::strerror(errno)};
   const std::size_t in_use = address_space();
@@ -129,7 +136,7 @@ ChildAnswer run_in_child(const std::function<std::string()>& work, const ChildLi
   }
   close(ends[1]);
   ChildAnswer answer;
-  if (!read_all(ends[0], limits, answer.bytes, answer.failure)) kill(child, SIGKILL);
+  if (!read_all(ends[0], limits, waiting, answer.bytes, answer.failure)) kill(child, SIGKILL);
   close(ends[0]);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

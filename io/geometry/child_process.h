@@ -20,6 +20,8 @@ struct ChildAnswer {
 };
 
 /// The work may throw: the failure is then its what(). It must not use threads, nor locks that other threads may hold.
-ChildAnswer run_in_child(const std::function<std::string()>& work, const ChildLimits& limits);
+/// `waiting` is called about once a second meanwhile.
+ChildAnswer run_in_child(const std::function<std::string()>& work, const ChildLimits& limits,
+                         const std::function<void()>& waiting = {});
 
 }  // namespace molten

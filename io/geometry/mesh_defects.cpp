@@ -4,15 +4,19 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <compare>
 #include <map>
-#include <numeric>
 
 #include "core/boundary/facet_grid.h"
+#include "core/particle_pass.h"
+#include "io/geometry/mesh_edges.h"
 
 namespace molten {
 namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
+
+constexpr std::size_t facets_a_piece = 4096;
 
 constexpr const char* fill_holes = "close it (in Blender: Mesh, Clean Up, Fill Holes)";
 constexpr const char* orient = "orient the triangles alike (in Blender: Mesh, Normals, Recalculate Outside)";
@@ -41,21 +45,12 @@ struct OddEdges {
 };
 
 OddEdges odd_edges(const TriangleMesh& mesh) {
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k)
-      if (t[k] != t[(k + 1) % 3]) edges.push_back({t[k], t[(k + 1) % 3]});
-  const auto low = [](const Edge& e) { return std::minmax(e.from, e.to); };
-  std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return low(a) < low(b); });
   OddEdges odd;
-  for (std::size_t i = 0, end; i < edges.size(); i = end) {
-    int balance = 0;
-    for (end = i; end < edges.size() && low(edges[end]) == low(edges[i]); ++end)
-      balance += edges[end].from < edges[end].to ? 1 : -1;
-    if (balance == 0) continue;
-    ((end - i) % 2 ? odd.open : odd.flipped).push_back(edges[i]);
-  }
+  for_each_edge(mesh, [&](std::int32_t low, std::int32_t high, std::span<const EdgeWalk> walks) {
+    if (balance_of(walks) == 0) return;
+    const Edge first = walks[0].forward ? Edge{low, high} : Edge{high, low};
+    (walks.size() % 2 ? odd.open : odd.flipped).push_back(first);
+  });
   return odd;
 }
 
@@ -98,20 +93,31 @@ Vec3 middle(const TriangleMesh& mesh, const Triangle& t) {
   return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
 }
 
+/// All but the first of those with the same corners.
 std::vector<Defect> duplicates(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> order(mesh.triangles.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](std::int32_t t) {
+  struct Corners {
+    std::int32_t middle, high, triangle;
+    auto operator<=>(const Corners&) const = default;
+  };
+  std::vector<std::uint32_t> begin(mesh.vertices.size() + 2, 0);  // by the lowest corner, one ahead while filling
+  for (const Triangle& t : mesh.triangles) ++begin[*std::min_element(t.begin(), t.end()) + 2];
+  for (std::size_t v = 2; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  std::vector<Corners> all(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     Triangle k = mesh.triangles[t];
     std::sort(k.begin(), k.end());
-    return k;
-  };
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+    all[begin[k[0] + 1]++] = {k[1], k[2], static_cast<std::int32_t>(t)};
+  }
   std::vector<Defect> defects;
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (key(order[i - 1]) == key(order[i]))
-      defects.push_back(
-          {fmt::format("triangle {} is there twice", order[i]), middle(mesh, mesh.triangles[order[i]]), merge});
+  for (std::size_t v = 0; v + 2 < begin.size(); ++v) {
+    std::sort(all.begin() + begin[v], all.begin() + begin[v + 1]);
+    for (std::size_t i = begin[v] + 1; i < begin[v + 1]; ++i) {
+      const Corners &a = all[i - 1], &b = all[i];
+      if (a.middle == b.middle && a.high == b.high)
+        defects.push_back(
+            {fmt::format("triangle {} is there twice", b.triangle), middle(mesh, mesh.triangles[b.triangle]), merge});
+    }
+  }
   return defects;
 }
 
@@ -136,6 +142,26 @@ bool pierces(const Facet<3>& f, const Vec3& a, const Vec3& b, Vec3& where) {
   return true;
 }
 
+/// Those of one facet; `near` is scratch.
+void add_crossings(std::vector<Defect>& defects, const std::vector<Facet<3>>& facets, std::size_t f,
+                   const FacetGrid<3>& grid, std::vector<std::int32_t>& near) {
+  const auto& c = facets[f].corner;
+  near.clear();
+  grid.visit_box(c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2]),
+                 [&](std::span<const std::int32_t> list) { near.insert(near.end(), list.begin(), list.end()); });
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  Vec3 where;
+  for (const std::int32_t g : near) {
+    if (g == static_cast<std::int32_t>(f)) continue;
+    for (int k = 0; k < 3; ++k) {
+      if (!pierces(facets[f], facets[g].corner[k], facets[g].corner[(k + 1) % 3], where)) continue;
+      defects.push_back({fmt::format("triangle {} passes through triangle {}", g, f), where, untangle});
+      break;
+    }
+  }
+}
+
 std::vector<Defect> crossings(const TriangleMesh& mesh, const std::vector<Facet<3>>& facets) {
   double edges = 0;
   Eigen::AlignedBox3d box;
@@ -143,25 +169,14 @@ std::vector<Defect> crossings(const TriangleMesh& mesh, const std::vector<Facet<
   for (const auto& f : facets) edges += (f.corner[1] - f.corner[0]).norm();
   const double mean = edges / static_cast<double>(facets.size()), margin = 1e-9 * box.sizes().norm();
   const FacetGrid<3> grid(facets, margin, 2 * mean);
+  const std::size_t pieces = (facets.size() + facets_a_piece - 1) / facets_a_piece;
+  std::vector<std::vector<Defect>> found(pieces);
+  for_each_piece_with(pieces, std::vector<std::int32_t>(), [&](std::size_t piece, std::vector<std::int32_t>& near) {
+    const std::size_t end = std::min(facets.size(), (piece + 1) * facets_a_piece);
+    for (std::size_t f = piece * facets_a_piece; f < end; ++f) add_crossings(found[piece], facets, f, grid, near);
+  });
   std::vector<Defect> defects;
-  std::vector<std::int32_t> near;
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    const auto& c = facets[f].corner;
-    near.clear();
-    grid.visit_box(c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2]),
-                   [&](std::span<const std::int32_t> list) { near.insert(near.end(), list.begin(), list.end()); });
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
-    Vec3 where;
-    for (const std::int32_t g : near) {
-      if (g == static_cast<std::int32_t>(f)) continue;
-      for (int k = 0; k < 3; ++k) {
-        if (!pierces(facets[f], facets[g].corner[k], facets[g].corner[(k + 1) % 3], where)) continue;
-        defects.push_back({fmt::format("triangle {} passes through triangle {}", g, f), where, untangle});
-        break;
-      }
-    }
-  }
+  for (auto& some : found) defects.insert(defects.end(), some.begin(), some.end());
   return defects;
 }
 

@@ -180,6 +180,7 @@ bool unpack(const std::string& answer, TriangleMesh& mesh) {
   if (!take(answer, at, 2, sizes) || !take(answer, at, sizes[0], points) ||
       !take(answer, at, sizes[1], mesh.triangles) || at != answer.size())
     return false;
+  mesh.vertices.reserve(points.size());
   for (const Point& p : points) mesh.vertices.emplace_back(p[0], p[1], p[2]);
   const auto count = static_cast<std::int64_t>(points.size());
   return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [count](const Triangle& t) {
@@ -205,12 +206,12 @@ void require_sound(const TriangleMesh& mesh, const fs::path& file) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const fs::path& file) {
+TriangleMesh read_mesh(const fs::path& file, const std::function<void()>& waiting) {
   const std::string extension = extension_of(file);
   std::string bytes = bytes_of(file);
   const ChildLimits limits{2 * giga + 100 * bytes.size(),
                            most_seconds + static_cast<int>(bytes.size() / bytes_a_second), largest_answer};
-  const ChildAnswer answer = run_in_child([&] { return parse(bytes, extension); }, limits);
+  const ChildAnswer answer = run_in_child([&] { return parse(bytes, extension); }, limits, waiting);
   if (!answer.failure.empty()) refuse(file, answer.failure + ": repair the file or export it again");
   TriangleMesh mesh;
   if (!unpack(answer.bytes, mesh))

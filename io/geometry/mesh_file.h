@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,8 @@
 namespace molten {
 
 /// Vertices that share a position are welded. Throws Error(geometry): missing (names the file and the command that
-/// fetches the models), unreadable, empty, truncated, non-finite vertex.
-TriangleMesh read_mesh(const std::filesystem::path& file);
+/// fetches the models), unreadable, empty, truncated, non-finite vertex. `waiting` is called about once a second.
+TriangleMesh read_mesh(const std::filesystem::path& file, const std::function<void()>& waiting = {});
 
 /// One line a defect, each with where it is; empty: a closed, consistently outward-oriented surface.
 struct MeshReport {

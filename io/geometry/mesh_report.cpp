@@ -5,30 +5,11 @@
 
 #include "core/boundary/shapes.h"
 #include "core/error.h"
+#include "io/geometry/mesh_edges.h"
 #include "io/geometry/mesh_file.h"
 
 namespace molten {
 namespace {
-
-struct Edge {
-  std::int32_t low, high;
-  bool forward;  // walked from low to high
-};
-
-/// The edges of all triangles, the same edge's walks together. Of a triangle that names a vertex twice, the two walks
-/// that remain cancel.
-std::vector<Edge> sorted_edges(const TriangleMesh& mesh) {
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (const auto& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = t[k], b = t[(k + 1) % 3];
-      if (a != b) edges.push_back({std::min(a, b), std::max(a, b), a < b});
-    }
-  std::sort(edges.begin(), edges.end(),
-            [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
-  return edges;
-}
 
 bool is_degenerate(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t) {
   const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
@@ -51,17 +32,12 @@ std::string first_at(const Vec3& v) {
 
 MeshReport inspect(const TriangleMesh& mesh) {
   MeshReport report;
-  const std::vector<Edge> edges = sorted_edges(mesh);
-  for (std::size_t i = 0; i < edges.size();) {
-    const Edge& edge = edges[i];
-    long balance = 0, walks = 0;
-    for (; i < edges.size() && edges[i].low == edge.low && edges[i].high == edge.high; ++i, ++walks)
-      balance += edges[i].forward ? 1 : -1;
-    if (balance == 0) continue;  // walked as often one way as the other: closed here
+  for_each_edge(mesh, [&](std::int32_t low, std::int32_t high, std::span<const EdgeWalk> walks) {
+    if (balance_of(walks) == 0) return;
     if (report.open_edges + report.flipped_edges == 0)
-      report.first_defect = (mesh.vertices[edge.low] + mesh.vertices[edge.high]) / 2;
-    ++(walks % 2 ? report.open_edges : report.flipped_edges);
-  }
+      report.first_defect = (mesh.vertices[low] + mesh.vertices[high]) / 2;
+    ++(walks.size() % 2 ? report.open_edges : report.flipped_edges);
+  });
   for (const auto& t : mesh.triangles) {
     if (!is_degenerate(mesh, t)) continue;
     if (report.open_edges + report.flipped_edges + report.degenerate_triangles == 0)

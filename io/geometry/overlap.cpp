@@ -44,16 +44,23 @@ Test test_of_terrain(const Scene& scene, const Terrain& terrain) {
   };
 }
 
-Test test_of_closed(const Scene& scene, const Boundary& boundary, double spacing) {
-  std::shared_ptr<const Inside> inside;
-  if (scene.dimensions == 2) {
-    inside = inside_of(outline(boundary.shape, spacing));
-  } else {
-    const TriangleMesh mesh = surface(scene, boundary.shape, spacing, boundary.inside);
-    if (!is_closed(mesh)) return [](const Place3&) { return false; };
-    inside = inside_of(mesh);
-  }
-  return [inside, container = boundary.inside, d = scene.dimensions - 1](const Place3& x) {
+std::shared_ptr<const Inside> inside_of_wall(const Boundary& boundary, const Wall<2>&, double spacing) {
+  return inside_of(outline(boundary.shape, spacing));
+}
+
+/// None if it is not closed. The wall faces the fluid, so one around it is turned.
+std::shared_ptr<const Inside> inside_of_wall(const Boundary& boundary, const Wall<3>& wall, double) {
+  TriangleMesh mesh{wall.vertices, wall.facets};
+  if (!is_closed(mesh)) return nullptr;
+  if (boundary.inside)
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return inside_of(mesh);
+}
+
+template <int Dim> Test test_of_closed(const Boundary& boundary, const Wall<Dim>& wall, double spacing) {
+  const std::shared_ptr<const Inside> inside = inside_of_wall(boundary, wall, spacing);
+  if (!inside) return [](const Place3&) { return false; };
+  return [inside, container = boundary.inside, d = Dim - 1](const Place3& x) {
     std::vector<Span> spans;
     inside->spans(x[0], x[1], spans);
     const bool within =
@@ -62,16 +69,17 @@ Test test_of_closed(const Scene& scene, const Boundary& boundary, double spacing
   };
 }
 
-std::vector<Test> tests_of(const Scene& scene, double spacing) {
+template <int Dim> std::vector<Test> tests_of(const Scene& scene, const std::vector<Wall<Dim>>& walls, double spacing) {
   std::vector<Test> tests;
-  for (const Boundary& boundary : scene.boundaries) {
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const Boundary& boundary = scene.boundaries[w];
     if (boundary.motion && !boundary.motion->key_frames.empty()) continue;  // starts elsewhere; contact knows where
     if (boundary.shape.plane)
       tests.push_back(test_of_plane(*boundary.shape.plane, scene.dimensions));
     else if (boundary.shape.terrain && !boundary.two_sided)
       tests.push_back(test_of_terrain(scene, *boundary.shape.terrain));
     else if (!boundary.two_sided)
-      tests.push_back(test_of_closed(scene, boundary, spacing));
+      tests.push_back(test_of_closed(boundary, walls[w], spacing));
   }
   return tests;
 }
@@ -95,9 +103,10 @@ void require_in_domain(const Scene& scene, const Start& start) {
 }  // namespace
 
 template <int Dim>
-std::size_t count_inside_walls(const Scene& scene, const Start& start, const Contact<Dim>& contact, Place3* first) {
+std::size_t count_inside_walls(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
+                               const Contact<Dim>& contact, Place3* first) {
   const double nearest = 0.01 * start.spacing;  // to a wall, m; contact moves those in front of it out to their radius
-  const std::vector<Test> tests = tests_of(scene, start.spacing);
+  const std::vector<Test> tests = tests_of(scene, walls, start.spacing);
   std::size_t inside = 0;
   for (const Place3& x : start.position) {
     Point<Dim> point;
@@ -109,11 +118,13 @@ std::size_t count_inside_walls(const Scene& scene, const Start& start, const Con
   return inside;
 }
 
-template <int Dim> void require_no_overlap(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
+template <int Dim>
+void require_no_overlap(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
+                        const Contact<Dim>& contact) {
   require_in_domain(scene, start);
   if (contact.empty()) return;
   Place3 first{};
-  const std::size_t inside = count_inside_walls(scene, start, contact, &first);
+  const std::size_t inside = count_inside_walls(scene, start, walls, contact, &first);
   if (inside > 0)
     throw Error(
         ExitCode::geometry,
@@ -122,9 +133,11 @@ template <int Dim> void require_no_overlap(const Scene& scene, const Start& star
                     scene.file, inside, start.position.size(), first[0], first[1], first[2], start.spacing / 2));
 }
 
-template std::size_t count_inside_walls(const Scene&, const Start&, const Contact<2>&, Place3*);
-template std::size_t count_inside_walls(const Scene&, const Start&, const Contact<3>&, Place3*);
-template void require_no_overlap(const Scene&, const Start&, const Contact<2>&);
-template void require_no_overlap(const Scene&, const Start&, const Contact<3>&);
+#define MOLTEN_INSTANTIATE(Dim)                                                                      \
+  template std::size_t count_inside_walls(const Scene&, const Start&, const std::vector<Wall<Dim>>&, \
+                                          const Contact<Dim>&, Place3*);                             \
+  template void require_no_overlap(const Scene&, const Start&, const std::vector<Wall<Dim>>&, const Contact<Dim>&);
+MOLTEN_INSTANTIATE(2)
+MOLTEN_INSTANTIATE(3)
 
 }  // namespace molten

@@ -156,7 +156,9 @@ void describe_vents(const Scene& scene, Start& start) {
   scene.dimensions == 2 ? describe<2>(scene, start) : describe<3>(scene, start);
 }
 
-template <int Dim> void require_open_vents(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
+template <int Dim>
+void require_open_vents(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
+                        const Contact<Dim>& contact) {
   const Vents<Dim> vents = build_vents<Dim>(scene, start, start.spacing);
   require_apart(scene, vents, start.spacing);
   for (std::size_t k = 0; k < vents.count(); ++k) {
@@ -170,7 +172,7 @@ template <int Dim> void require_open_vents(const Scene& scene, const Start& star
       auto& at = outside.position.emplace_back();
       for (int d = 0; d < Dim; ++d) at[d] = x[d];
     }
-    if (const std::size_t n = count_inside_walls(scene, outside, contact); n > 0)
+    if (const std::size_t n = count_inside_walls(scene, outside, walls, contact); n > 0)
       throw Error(
           ExitCode::geometry,
           fmt::format("{}: {} of the {} particles that leave it at ({:.6g}, {:.6g}, {:.6g}) m would be inside a "
@@ -182,7 +184,7 @@ template <int Dim> void require_open_vents(const Scene& scene, const Start& star
 
 template Vents<2> build_vents(const Scene&, const Start&, double);
 template Vents<3> build_vents(const Scene&, const Start&, double);
-template void require_open_vents(const Scene&, const Start&, const Contact<2>&);
-template void require_open_vents(const Scene&, const Start&, const Contact<3>&);
+template void require_open_vents(const Scene&, const Start&, const std::vector<Wall<2>>&, const Contact<2>&);
+template void require_open_vents(const Scene&, const Start&, const std::vector<Wall<3>>&, const Contact<3>&);
 
 }  // namespace molten

@@ -14,6 +14,9 @@ template <int Dim> Vents<Dim> build_vents(const Scene& scene, const Start& start
 void describe_vents(const Scene& scene, Start& start);
 
 /// Throws Error(geometry), with vent and place, if what leaves a vent would be inside a wall.
-template <int Dim> void require_open_vents(const Scene& scene, const Start& start, const Contact<Dim>& contact);
+/// `walls`, `contact`: as for require_no_overlap (assemble.h).
+template <int Dim>
+void require_open_vents(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
+                        const Contact<Dim>& contact);
 
 }  // namespace molten

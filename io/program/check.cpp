@@ -19,24 +19,28 @@ namespace molten {
 
 namespace {
 
-void print_defects(const TriangleMesh& mesh) {
-  for (const Defect& d : find_defects(mesh))
+/// Places are those in the scene.
+void print_mesh(const Scene& scene, const MeshFile& file, Stages& stages) {
+  stages.begin("reading " + file.path);
+  const TriangleMesh mesh = placed_mesh(scene, file, [&] { stages.tick(); });
+  stages.begin("looking for defects of " + file.path);
+  const MeshReport r = inspect(mesh);
+  const std::vector<Defect> defects = find_defects(mesh);
+  stages.finish();
+  fmt::print(
+      "mesh              {}: {} vertices, {} triangles, {} open edges, {} flipped edges, {} degenerate triangles\n",
+      file.path, mesh.vertices.size(), mesh.triangles.size(), r.open_edges, r.flipped_edges, r.degenerate_triangles);
+  for (const Defect& d : defects)
     fmt::print("                  {} at ({:.6g}, {:.6g}, {:.6g}) m: {}\n", d.what, d.place[0], d.place[1], d.place[2],
                d.cure);
 }
 
-/// Places are those in the scene.
-void print_mesh(const Scene& scene, const MeshFile& file) {
-  const TriangleMesh mesh = placed_mesh(scene, file);
-  const MeshReport r = inspect(mesh);
-  fmt::print(
-      "mesh              {}: {} vertices, {} triangles, {} open edges, {} flipped edges, {} degenerate triangles\n",
-      file.path, mesh.vertices.size(), mesh.triangles.size(), r.open_edges, r.flipped_edges, r.degenerate_triangles);
-  print_defects(mesh);
-}
-
-template <int Dim> void print_leak(const Scene& scene, const Start& start, const Contact<Dim>& contact) {
-  const auto leak = find_leak<Dim>(scene, start, build_walls<Dim>(scene, start.spacing), contact);
+template <int Dim>
+void print_leak(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
+                const Contact<Dim>& contact, Stages& stages) {
+  stages.begin("looking for leaks");
+  const auto leak = find_leak<Dim>(scene, start, walls, contact);
+  stages.finish();
   if (!leak) return;
   const auto text = [](const Point<Dim>& x) {
     return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x[0], x[1], Dim == 3 ? x[Dim - 1] : 0.0);
@@ -53,12 +57,17 @@ std::string joined(const std::vector<std::string>& words) {
   return all;
 }
 
-template <int Dim, class Real> void print_run(const Scene& scene, const Features& features, const Start& start) {
+template <int Dim, class Real>
+void print_run(const Scene& scene, const Features& features, const Start& start, Stages& stages) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
-  Surroundings<Dim> around = build_surroundings(scene, start, p);
-  require_no_overlap(scene, start, around.contact);
-  require_open_vents(scene, start, around.contact);
-  print_leak(scene, start, around.contact);
+  stages.begin("building the walls");
+  const std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
+  Surroundings<Dim> around = build_surroundings(scene, start, p, walls);
+  stages.begin("looking for particles inside walls");
+  require_no_overlap(scene, start, walls, around.contact);
+  require_open_vents(scene, start, walls, around.contact);
+  print_leak(scene, start, walls, around.contact, stages);
+  stages.begin("timing some steps");
   State<Dim, Real> s = make_state<Dim, Real>(features, p, std::move(around), start);
   // A few steps tell the time step, its limit and the speed of this machine.
   step(s);
@@ -66,6 +75,7 @@ template <int Dim, class Real> void print_run(const Scene& scene, const Features
   constexpr int trial_steps = 10;
   for (int k = 0; k < trial_steps; ++k) step(s);
   const double a_step = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() / trial_steps;
+  stages.finish();
   const double steps = scene.run.end_time / s.clock.dt;
   const double frame =
       static_cast<double>(start.position.size()) * 4 * (8 + static_cast<double>(available_fields(features).size()) + 2);
@@ -94,21 +104,24 @@ template <int Dim, class Real> void print_run(const Scene& scene, const Features
 ExitCode check_scene(const Scene& scene) {
   const Features features = features_of(scene);
   require_fields(features, scene.output.fields);
+  Stages stages;
   for (const Body& body : scene.fluid.bodies)
-    if (body.shape.mesh) print_mesh(scene, *body.shape.mesh);
+    if (body.shape.mesh) print_mesh(scene, *body.shape.mesh, stages);
   for (const Boundary& boundary : scene.boundaries)
-    if (boundary.shape.mesh) print_mesh(scene, *boundary.shape.mesh);
+    if (boundary.shape.mesh) print_mesh(scene, *boundary.shape.mesh, stages);
   for (const Vent& vent : scene.vents)
-    if (vent.mesh) print_mesh(scene, *vent.mesh);
+    if (vent.mesh) print_mesh(scene, *vent.mesh, stages);
+  stages.begin("filling the bodies");
   const Start start = fill_bodies(scene, features);
+  stages.finish();
   fmt::print("scene             {}{}\n", scene.file, scene.title.empty() ? "" : ": " + scene.title);
   fmt::print("features          {}\n", joined(features.names()));
   fmt::print("passes a step     {}\n", joined(features.passes()));
   const bool single = scene.numerics.precision == Precision::single;
   if (scene.dimensions == 2)
-    single ? print_run<2, float>(scene, features, start) : print_run<2, double>(scene, features, start);
+    single ? print_run<2, float>(scene, features, start, stages) : print_run<2, double>(scene, features, start, stages);
   else
-    single ? print_run<3, float>(scene, features, start) : print_run<3, double>(scene, features, start);
+    single ? print_run<3, float>(scene, features, start, stages) : print_run<3, double>(scene, features, start, stages);
   fmt::print("no errors found\n");
   return ExitCode::done;
 }

@@ -57,4 +57,25 @@ void Progress::finish() {
   if (terminal_ && shown_) fmt::print(stderr, "\n");
 }
 
+void Stages::begin(const std::string& at) {
+  at_ = at;
+  if (since(begun_) > short_work) show();
+}
+
+void Stages::tick() {
+  if (since(begun_) > short_work && since(last_) > (terminal_ ? terminal_interval : plain_interval)) show();
+}
+
+void Stages::show() {
+  fmt::print(stderr, "{}{} ({:.0f} s){}", terminal_ ? "\r\x1b[K" : "", at_, since(begun_), terminal_ ? "" : "\n");
+  std::fflush(stderr);
+  shown_ = true;
+  last_ = std::chrono::steady_clock::now();
+}
+
+void Stages::finish() {
+  if (terminal_ && shown_) fmt::print(stderr, "\r\x1b[K");
+  shown_ = false;
+}
+
 }  // namespace molten

@@ -240,13 +240,13 @@ template <int Dim, class Real> class Runner {
 /// A run's state and what else its folder holds, ready to step.
 template <int Dim, class Real>
 Runner<Dim, Real> prepare_run(const Scene& scene, const std::filesystem::path& folder, const Features& features,
-                              const Start& start) {
+                              const Start& start, const std::string& print) {
   const Parameters<Dim> parameters = parameters_of<Dim>(scene, start);
-  Surroundings<Dim> around = build_surroundings(scene, start, parameters);
-  require_no_overlap(scene, start, around.contact);
-  require_open_vents(scene, start, around.contact);
-  return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(around), start),
-                           fingerprint(scene, start));
+  const std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
+  Surroundings<Dim> around = build_surroundings(scene, start, parameters, walls);
+  require_no_overlap(scene, start, walls, around.contact);
+  require_open_vents(scene, start, walls, around.contact);
+  return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(around), start), print);
 }
 
 /// Calls f.template operator()<Dim, Real>() for the scene's dimensions and precision.
@@ -296,14 +296,15 @@ ExitCode run_scene(const Scene& scene, const RunOptions& options) {
   const Features features = features_of(scene);
   require_fields(features, scene.output.fields);
   const Start start = fill_bodies(scene, features);  // meshes are read in child processes: before any threads
+  const std::string print = fingerprint(scene, start);
   set_threads(options.threads);
   return dispatch(scene, [&]<int Dim, class Real>() {
-    auto runner = prepare_run<Dim, Real>(scene, options.folder, features, start);
+    auto runner = prepare_run<Dim, Real>(scene, options.folder, features, start, print);
     make_folder(options.folder, options.overwrite);
     write_text(options.folder / "scene.toml", scene.text);
     write_obj(options.folder / "walls.obj", picture_of_walls(scene, start));
     write_bodies(options.folder / "bodies", pictures_of_bodies(scene, start));
-    write_manifest(options.folder, scene, features, fingerprint(scene, start));
+    write_manifest(options.folder, scene, features, print);
     fmt::print(stderr, "{}: {} particles, spacing {:.4g} m, {}-D, {} precision, {} threads, into {}\n",
                scene.title.empty() ? scene.file : scene.title, runner.particles(), start.spacing, Dim,
                sizeof(Real) == 4 ? "single" : "double", omp_get_max_threads(), options.folder.string());
@@ -355,7 +356,7 @@ ExitCode resume_run(const ResumeOptions& options) {
                     ": the scene, a mesh or the numerics changed since the checkpoint; only [run] and "
                     "[output] may change; undo it or go on all the same with --force");
   return dispatch(scene, [&]<int Dim, class Real>() {
-    auto runner = prepare_run<Dim, Real>(scene, options.folder, features, start);
+    auto runner = prepare_run<Dim, Real>(scene, options.folder, features, start, print);
     runner.restore(checkpoint.file);
     write_text(copy, scene.text);
     fmt::print(stderr, "resuming {} from t = {:.6g} s, step {}\n", options.folder.string(), checkpoint.head.time,
