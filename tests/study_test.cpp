@@ -81,6 +81,8 @@ Cloud block_cloud(int dimensions, const Triple& upper, double spacing) {
   return c;
 }
 
+double distance(const Triple& a, const Triple& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
 TEST(StudyProbes, PressureIsThatOfTheFluidAndNoneWhereThereIsNone) {
   for (const int dimensions : {2, 3}) {
     Cloud c = block_cloud(dimensions, {1, 1, 1}, 0.1);
@@ -89,6 +91,32 @@ TEST(StudyProbes, PressureIsThatOfTheFluidAndNoneWhereThereIsNone) {
     EXPECT_EQ(pressure_at(c, dimensions, {1.25, 0.5, 0.5}), 0) << "a spray's weight";
     for (std::size_t k = 0; k < c.count(); ++k) c.pressure[k] = 3 * c.position[k][1];
     EXPECT_NEAR(pressure_at(c, dimensions, {0.5, 0.5, 0.5}), 1.5, 1e-12) << "linear, by symmetry";
+  }
+}
+
+TEST(StudyProbes, SensorFeelsTheForceOnItsWall) {
+  for (const int dimensions : {2, 3}) {
+    const double spacing = 0.02, h = 1.3 * spacing;
+    Cloud c = block_cloud(dimensions, {0.2, 0.2, 0.2}, spacing);
+    const Triple upper{0.2, 1, 1}, corner{0.2, 0.01, 0.1}, wall{0.2, 0.1, 0.1};
+    EXPECT_NEAR(WallSensor(wall, {}, upper).pressure(c, dimensions), 7, 0.07) << "far from the floor";
+    EXPECT_NEAR(WallSensor(corner, {}, upper).pressure(c, dimensions), 7, 0.21) << "beside the floor";
+    // A drop: what is dry around it feels nothing. 2 V p W is the force of a wall with support over its area.
+    std::fill(c.pressure.begin(), c.pressure.end(), 0);
+    const auto is_nearer = [&](std::size_t a, std::size_t b) {
+      return distance(c.position[a], wall) < distance(c.position[b], wall);
+    };
+    std::vector<std::size_t> order(c.count());
+    std::iota(order.begin(), order.end(), 0);
+    const std::size_t drop = *std::min_element(order.begin(), order.end(), is_nearer);
+    c.pressure[drop] = 7;
+    Triple there = c.position[drop];
+    if (dimensions == 2) there[2] = wall[2];
+    const double q = distance(there, wall) / h;
+    const double alpha = dimensions == 2 ? 7 / (4 * M_PI * h * h) : 21 / (16 * M_PI * h * h * h);
+    const double force = 2 * std::pow(spacing, dimensions) * 7 * alpha * std::pow(1 - q / 2, 4) * (2 * q + 1);
+    EXPECT_NEAR(WallSensor(wall, {}, upper).pressure(c, dimensions), force, 0.01 * force);
+    EXPECT_LT(force, 3);
   }
 }
 
