@@ -123,6 +123,9 @@ TEST(StudyProbes, SensorFeelsTheForceOnItsWall) {
 TEST(StudyProbes, DepthEnergyFront) {
   EXPECT_NEAR(depth_at(block_cloud(2, {1, 0.6, 0}, 0.1), 2, {0.5, 0, 0}, {0.2, 0, 0}), 0.6, 1e-12);
   EXPECT_NEAR(depth_at(block_cloud(3, {1, 1, 0.3}, 0.1), 3, {0.5, 0.5, 0}, {0.2, 0.1, 0}), 0.3, 1e-12);
+  EXPECT_NEAR(depth_at(block_cloud(2, {1, 0.6, 0}, 0.1), 2, {0.45, 0, 0}, {0.105, 0, 0}), 0.6, 1e-12)
+      << "a part of a row";
+  EXPECT_NEAR(depth_at(block_cloud(3, {1, 1, 0.3}, 0.1), 3, {0.45, 0.53, 0}, {0.105, 0.01, 0}), 0.3, 1e-12);
   const Cloud c = block_cloud(2, {1, 1, 0}, 0.1);
   EXPECT_NEAR(kinetic_energy(c), 1000 * 9 / 2., 1e-9);
   EXPECT_NEAR(front_of(c), 1, 1e-12);

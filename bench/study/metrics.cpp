@@ -70,14 +70,19 @@ void FieldError::add(double value, double exact) {
 double FieldError::l2() const { return std::sqrt(difference2_ / exact2_); }
 
 double depth_at(const Cloud& cloud, int dimensions, const Triple& place, const Triple& half) {
-  double volume = 0, area = 1;
+  double sum = 0, area = 1;
   for (int d = 0; d + 1 < dimensions; ++d) area *= 2 * half[d];
   for (std::size_t k = 0; k < cloud.count(); ++k) {
-    bool over = true;
-    for (int d = 0; d + 1 < dimensions; ++d) over = over && std::abs(cloud.position[k][d] - place[d]) < half[d];
-    if (over) volume += cloud.mass / cloud.density[k];
+    const double volume = cloud.mass / cloud.density[k], side = std::pow(volume, 1.0 / dimensions);
+    double over = 1;
+    for (int d = 0; d + 1 < dimensions; ++d) {
+      const double aside = cloud.position[k][d] - place[d];
+      const double low = std::max(aside - side / 2, -half[d]), high = std::min(aside + side / 2, half[d]);
+      over *= std::max(high - low, 0.0) / side;
+    }
+    sum += over * volume;
   }
-  return volume / area;
+  return sum / area;
 }
 
 namespace {

@@ -42,7 +42,8 @@ class FieldError {
 };
 
 /// Depth of fluid (m) over the rectangle (2-D: interval) of ±half (m) about a place: its volume over its area, as a
-/// wire that is wet in part measures.
+/// wire that is wet in part measures. A particle counts as a cube as far as it lies over the rectangle: by centres,
+/// three rows of a lattice would count where there is room for two.
 double depth_at(const Cloud& cloud, int dimensions, const Triple& place, const Triple& half);
 
 /// A quantity of the particles (by their place in the cloud) at a point: moving least squares of first order over a
