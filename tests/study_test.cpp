@@ -81,6 +81,8 @@ Cloud block_cloud(int dimensions, const Triple& upper, double spacing) {
   return c;
 }
 
+double distance(const Triple& a, const Triple& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
 TEST(StudyProbes, PressureIsThatOfTheFluidAndNoneWhereThereIsNone) {
   for (const int dimensions : {2, 3}) {
     Cloud c = block_cloud(dimensions, {1, 1, 1}, 0.1);
@@ -92,9 +94,38 @@ TEST(StudyProbes, PressureIsThatOfTheFluidAndNoneWhereThereIsNone) {
   }
 }
 
+TEST(StudyProbes, SensorFeelsTheForceOnItsWall) {
+  for (const int dimensions : {2, 3}) {
+    const double spacing = 0.02, h = 1.3 * spacing;
+    Cloud c = block_cloud(dimensions, {0.2, 0.2, 0.2}, spacing);
+    const Triple upper{0.2, 1, 1}, corner{0.2, 0.01, 0.1}, wall{0.2, 0.1, 0.1};
+    EXPECT_NEAR(WallSensor(wall, {}, upper).pressure(c, dimensions), 7, 0.07) << "far from the floor";
+    EXPECT_NEAR(WallSensor(corner, {}, upper).pressure(c, dimensions), 7, 0.21) << "beside the floor";
+    // A drop: what is dry around it feels nothing. 2 V p W is the force of a wall with support over its area.
+    std::fill(c.pressure.begin(), c.pressure.end(), 0);
+    const auto is_nearer = [&](std::size_t a, std::size_t b) {
+      return distance(c.position[a], wall) < distance(c.position[b], wall);
+    };
+    std::vector<std::size_t> order(c.count());
+    std::iota(order.begin(), order.end(), 0);
+    const std::size_t drop = *std::min_element(order.begin(), order.end(), is_nearer);
+    c.pressure[drop] = 7;
+    Triple there = c.position[drop];
+    if (dimensions == 2) there[2] = wall[2];
+    const double q = distance(there, wall) / h;
+    const double alpha = dimensions == 2 ? 7 / (4 * M_PI * h * h) : 21 / (16 * M_PI * h * h * h);
+    const double force = 2 * std::pow(spacing, dimensions) * 7 * alpha * std::pow(1 - q / 2, 4) * (2 * q + 1);
+    EXPECT_NEAR(WallSensor(wall, {}, upper).pressure(c, dimensions), force, 0.01 * force);
+    EXPECT_LT(force, 3);
+  }
+}
+
 TEST(StudyProbes, DepthEnergyFront) {
   EXPECT_NEAR(depth_at(block_cloud(2, {1, 0.6, 0}, 0.1), 2, {0.5, 0, 0}, {0.2, 0, 0}), 0.6, 1e-12);
   EXPECT_NEAR(depth_at(block_cloud(3, {1, 1, 0.3}, 0.1), 3, {0.5, 0.5, 0}, {0.2, 0.1, 0}), 0.3, 1e-12);
+  EXPECT_NEAR(depth_at(block_cloud(2, {1, 0.6, 0}, 0.1), 2, {0.45, 0, 0}, {0.105, 0, 0}), 0.6, 1e-12)
+      << "a part of a row";
+  EXPECT_NEAR(depth_at(block_cloud(3, {1, 1, 0.3}, 0.1), 3, {0.45, 0.53, 0}, {0.105, 0.01, 0}), 0.3, 1e-12);
   const Cloud c = block_cloud(2, {1, 1, 0}, 0.1);
   EXPECT_NEAR(kinetic_energy(c), 1000 * 9 / 2., 1e-9);
   EXPECT_NEAR(front_of(c), 1, 1e-12);

@@ -70,17 +70,31 @@ void FieldError::add(double value, double exact) {
 double FieldError::l2() const { return std::sqrt(difference2_ / exact2_); }
 
 double depth_at(const Cloud& cloud, int dimensions, const Triple& place, const Triple& half) {
-  double volume = 0, area = 1;
+  double sum = 0, area = 1;
   for (int d = 0; d + 1 < dimensions; ++d) area *= 2 * half[d];
   for (std::size_t k = 0; k < cloud.count(); ++k) {
-    bool over = true;
-    for (int d = 0; d + 1 < dimensions; ++d) over = over && std::abs(cloud.position[k][d] - place[d]) < half[d];
-    if (over) volume += cloud.mass / cloud.density[k];
+    const double volume = cloud.mass / cloud.density[k], side = std::pow(volume, 1.0 / dimensions);
+    double over = 1;
+    for (int d = 0; d + 1 < dimensions; ++d) {
+      const double aside = cloud.position[k][d] - place[d];
+      const double low = std::max(aside - side / 2, -half[d]), high = std::min(aside + side / 2, half[d]);
+      over *= std::max(high - low, 0.0) / side;
+    }
+    sum += over * volume;
   }
-  return volume / area;
+  return sum / area;
 }
 
 namespace {
+
+/// Wendland C2 as W/W(0), by r/h below 2.
+double shape(double q) { return std::pow(1 - q / 2, 4) * (2 * q + 1); }
+
+/// Its integral over the whole support.
+double shape_integral(double smoothing_length, int dimensions) {
+  return dimensions == 2 ? 4 * M_PI / 7 * std::pow(smoothing_length, 2)
+                         : 16 * M_PI / 21 * std::pow(smoothing_length, 3);
+}
 
 /// Calls f(k, weight, offset from the point) for the particles within a support of a point; Wendland C2 as W/W(0).
 template <class F> void near(const Cloud& cloud, int dimensions, const Triple& point, F&& f) {
@@ -91,7 +105,7 @@ template <class F> void near(const Cloud& cloud, int dimensions, const Triple& p
     for (int d = 0; d < dimensions; ++d) offset[d] = cloud.position[k][d] - point[d], r2 += offset[d] * offset[d];
     if (r2 >= support * support) continue;
     const double q = std::sqrt(r2) / cloud.smoothing_length;
-    f(k, std::pow(1 - q / 2, 4) * (2 * q + 1), offset);
+    f(k, shape(q), offset);
   }
 }
 
@@ -119,9 +133,42 @@ double pressure_at(const Cloud& cloud, int dimensions, const Triple& point) {
     sum += weight * cloud.pressure[k];
   });
   // On a wall half of the support is fluid; a tenth of the full sum is a drop.
-  const double h = cloud.smoothing_length / cloud.spacing;
-  const double full = dimensions == 2 ? 4 * M_PI / 7 * h * h : 16 * M_PI / 21 * h * h * h;
+  const double full = shape_integral(cloud.smoothing_length / cloud.spacing, dimensions);
   return weights > 0.1 * full ? sum / weights : 0;
+}
+
+double WallSensor::part_inside(double smoothing_length, int dimensions) const {
+  constexpr int cells = 40;  // across the support
+  const double cell = 4 * smoothing_length / cells;
+  const auto middle = [cell](int k) { return (k + 0.5) * cell - cells * cell / 2; };
+  double sum = 0;
+  for (int k = 0; k < (dimensions == 3 ? cells : 1); ++k)
+    for (int j = 0; j < cells; ++j)
+      for (int i = 0; i < cells; ++i) {
+        const Triple offset{middle(i), middle(j), dimensions == 3 ? middle(k) : 0};
+        double r2 = 0, inside = 1;
+        for (int d = 0; d < dimensions; ++d) {
+          r2 += offset[d] * offset[d];
+          const double low = std::max(place_[d] + offset[d] - cell / 2, lower_[d]);
+          const double high = std::min(place_[d] + offset[d] + cell / 2, upper_[d]);
+          inside *= std::clamp((high - low) / cell, 0.0, 1.0);
+        }
+        const double q = std::sqrt(r2) / smoothing_length;
+        if (q < 2) sum += inside * shape(q);
+      }
+  return sum * std::pow(cell, dimensions) / shape_integral(smoothing_length, dimensions);
+}
+
+double WallSensor::pressure(const Cloud& cloud, int dimensions) {
+  if (cloud.smoothing_length != smoothing_length_) {
+    smoothing_length_ = cloud.smoothing_length;
+    part_ = part_inside(smoothing_length_, dimensions);
+  }
+  double sum = 0;
+  near(cloud, dimensions, place_, [&](std::size_t k, double weight, const Triple&) {
+    sum += weight * cloud.pressure[k] * cloud.mass / cloud.density[k];
+  });
+  return sum / (part_ * shape_integral(smoothing_length_, dimensions));
 }
 
 double kinetic_energy(const Cloud& cloud) {

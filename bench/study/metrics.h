@@ -42,7 +42,8 @@ class FieldError {
 };
 
 /// Depth of fluid (m) over the rectangle (2-D: interval) of ±half (m) about a place: its volume over its area, as a
-/// wire that is wet in part measures.
+/// wire that is wet in part measures. A particle counts as a cube as far as it lies over the rectangle: by centres,
+/// three rows of a lattice would count where there is room for two.
 double depth_at(const Cloud& cloud, int dimensions, const Triple& place, const Triple& half);
 
 /// A quantity of the particles (by their place in the cloud) at a point: moving least squares of first order over a
@@ -51,6 +52,23 @@ double value_at(const Cloud& cloud, int dimensions, const Triple& point, const s
 
 /// Pressure (Pa) at a point, by Shepard's mean over a kernel's support; 0 where there is hardly any fluid.
 double pressure_at(const Cloud& cloud, int dimensions, const Triple& point);
+
+/// A pressure sensor in a wall of a box of fluid, m. It feels the force of the fluid on the wall over its area:
+/// Σ V p W over the part of the kernel that lies in the box. What is dry counts as without pressure there, so that a
+/// drop that touches the wall isn't taken for a wall of water; the sum over the wall is what the fluid's momentum loses
+/// to a wall with support (core/boundary/wall_terms.h).
+class WallSensor {
+ public:
+  WallSensor(const Triple& place, const Triple& lower, const Triple& upper)
+      : place_(place), lower_(lower), upper_(upper) {}
+  double pressure(const Cloud& cloud, int dimensions);  // Pa
+
+ private:
+  double part_inside(double smoothing_length, int dimensions) const;
+
+  Triple place_, lower_, upper_;
+  double smoothing_length_ = 0, part_ = 0;  // the part of the kernel inside, for the smoothing length asked last
+};
 
 /// Kinetic energy (J; 2-D: J/m).
 double kinetic_energy(const Cloud& cloud);
