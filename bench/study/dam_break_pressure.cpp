@@ -119,7 +119,8 @@ void run_kleefsman(const Request& r, Report& report) {
 Case lobovsky_pressure() {
   return {"lobovsky-pressure",
           "column 0.6 m wide, 0.3 m high in a tank of 1.61 m (Lobovský et al. 2014); mean deviation of the front at "
-          "0.16, 0.27 and 0.37 s (reach: Dias 2017), peak and arrival of the pressure 3 mm above the floor",
+          "0.16, 0.27 and 0.37 s (reach: Dias 2017), peak and arrival of the pressure 3 mm above the floor, the "
+          "force on the wall over its area, dry parts counted",
           "particles a height of the column",
           60,
           8,
@@ -134,7 +135,7 @@ Case kleefsman() {
   return {
       "kleefsman",
       "dam break on a box in 3-D (Kleefsman et al. 2005, SPHERIC test 2); mean deviation of the depths H2 and H4 over "
-      "the water's depth, peaks and arrivals of the pressures P1 and P2",
+      "the water's depth, peaks and arrivals of the pressures P1 and P2, likewise",
       "particles",
       12000,
       500,
