@@ -38,7 +38,7 @@ std::vector<std::string> flags_of(int argc, char** argv) {
 
 }  // namespace
 
-int run_program(int argc, char** argv, const std::function<void()>& add) {
+int run_program(int argc, char** argv, const std::function<void()>& add, const std::function<void()>& conclude) {
   std::vector<std::string> flags = flags_of(argc, argv);
   std::vector<char*> words{argv[0]};
   for (std::string& f : flags) words.push_back(f.data());
@@ -51,7 +51,9 @@ int run_program(int argc, char** argv, const std::function<void()>& add) {
   benchmark::AddCustomContext("cpu", cpu_name());
   benchmark::AddCustomContext("threads", std::to_string(omp_get_max_threads()));
   add();
-  return benchmark::RunSpecifiedBenchmarks() > 0 ? 0 : 2;
+  const bool any = benchmark::RunSpecifiedBenchmarks() > 0;
+  if (conclude) conclude();
+  return any ? 0 : 2;
 }
 
 long long steps_to_time(long long usual) { return asked_steps > 0 ? asked_steps : usual; }

@@ -13,8 +13,8 @@ namespace molten::bench {
 
 /// The main of a benchmark program: names given as they are match as prefixes (with --exact only as they are),
 /// --steps=N overrides the steps that whole-step benchmarks time, the rest is Google Benchmark's. `add` registers the
-/// benchmarks.
-int run_program(int argc, char** argv, const std::function<void()>& add);
+/// benchmarks; `conclude` comes after them.
+int run_program(int argc, char** argv, const std::function<void()>& add, const std::function<void()>& conclude = {});
 
 /// --steps=N, else `usual`.
 long long steps_to_time(long long usual);

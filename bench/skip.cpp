@@ -162,6 +162,7 @@ void add_all() {
 }
 
 void print_table() {
+  if (results.empty()) return;
   fmt::print(stderr, "\n{:22} {:>10} {:>8} {:>8}   {:>26}   {:>26}\n", "feature", "minimal ms", "off ms", "on ms",
              "off / minimal", "on / minimal");
   const auto text = [](const Ratio& r) { return fmt::format("{:.4f} [{:.4f}, {:.4f}]", r.median, r.low, r.high); };
@@ -174,7 +175,5 @@ void print_table() {
 }  // namespace molten::bench
 
 int main(int argc, char** argv) {
-  const int code = molten::bench::run_program(argc, argv, molten::bench::add_all);
-  if (!molten::bench::results.empty()) molten::bench::print_table();
-  return code;
+  return molten::bench::run_program(argc, argv, molten::bench::add_all, molten::bench::print_table);
 }

@@ -154,6 +154,7 @@ void add_all() {
 }
 
 void print_table() {
+  if (results.empty()) return;
   fmt::print(stderr, "\n{:32} {:>10} {:>8} {:>14} {:>24} {:>9}\n", "", "without ms", "with ms", "beside walls %",
              "cost %", "reach %");
   for (const Result& r : results)
@@ -167,7 +168,5 @@ void print_table() {
 }  // namespace molten::bench
 
 int main(int argc, char** argv) {
-  const int code = molten::bench::run_program(argc, argv, molten::bench::add_all);
-  if (!molten::bench::results.empty()) molten::bench::print_table();
-  return code;
+  return molten::bench::run_program(argc, argv, molten::bench::add_all, molten::bench::print_table);
 }

@@ -26,11 +26,20 @@ template <int Dim> std::vector<Facet<Dim>> soup(Random<Dim>& random, int n) {
   return facets;
 }
 
+/// Facets of all sizes, and the grid of them.
+template <int Dim> struct GridOfSoup {
+  static constexpr double margin = 0.2;
+  Random<Dim> random;
+  std::vector<Facet<Dim>> facets;
+  FacetGrid<Dim> grid;
+
+  explicit GridOfSoup(unsigned seed) : random(seed), facets(soup<Dim>(random, 60)), grid(facets, margin, 0.5) {}
+};
+
 template <int Dim> void lists_all_near() {
-  Random<Dim> random(11);
-  const auto facets = soup<Dim>(random, 60);
-  const double margin = 0.2;
-  const FacetGrid<Dim> grid(facets, margin, 0.5);
+  GridOfSoup<Dim> of(11);
+  auto& [random, facets, grid] = of;
+  constexpr double margin = GridOfSoup<Dim>::margin;
   int few = 0;
   for (int i = 0; i < 20000; ++i) {
     const Point<Dim> x = random.point(9);
@@ -55,10 +64,9 @@ TEST(FacetGrid, ListsAllThatIsNear) {
 }
 
 template <int Dim> void hears_of_boxes() {
-  Random<Dim> random(12);
-  const auto facets = soup<Dim>(random, 60);
-  const double margin = 0.2;
-  const FacetGrid<Dim> grid(facets, margin, 0.5);
+  GridOfSoup<Dim> of(12);
+  auto& [random, facets, grid] = of;
+  constexpr double margin = GridOfSoup<Dim>::margin;
   int none = 0;
   for (int i = 0; i < 5000; ++i) {
     const Point<Dim> middle = random.point(9), half = random.point().cwiseAbs() * random.scale(0.01, 3);
@@ -78,10 +86,9 @@ TEST(FacetGrid, AnyInABoxIsHeardOf) {
 }
 
 template <int Dim> void one_list_has_all() {
-  Random<Dim> random(13);
-  const auto facets = soup<Dim>(random, 60);
-  const double margin = 0.2;
-  const FacetGrid<Dim> grid(facets, margin, 0.5);
+  GridOfSoup<Dim> of(13);
+  auto& [random, facets, grid] = of;
+  constexpr double margin = GridOfSoup<Dim>::margin;
   int known = 0;
   for (int i = 0; i < 5000; ++i) {
     const Point<Dim> x = random.point(6);
