@@ -184,66 +184,6 @@ template <class Real, int N, class F> inline Lanes<Real, N> each_lane(Lanes<Real
   }
 }
 
-// ---- a cluster pair's lanes -----------------------------------------------------------------------------------------
-// I particles i against J particles j fill I × J = N lanes: lane k holds i = k / J and j = k % J.
-
-/// I values from memory, each repeated N / I times.
-template <int I, class Real, int N> inline Lanes<Real, N> load_i(const Real* p) {
-  Lanes<Real, N> r;
-  if constexpr (N == 1)
-    r.v = *p;
-  else
-    for (int k = 0; k < N; ++k) r.v[k] = p[k / (N / I)];
-  return r;
-}
-
-/// J values from memory, the whole repeated N / J times.
-template <int J, class Real, int N> inline Lanes<Real, N> load_j(const Real* p) {
-  using L = Lanes<Real, N>;
-  if constexpr (J == 1)
-    return L(*p);
-  else {
-    using V = typename L::Native;
-#if defined(__AVX512F__)
-    if constexpr (sizeof(L) == 64 && sizeof(Real) == 4 && J == 4)
-      return {(V)_mm512_maskz_broadcast_f32x4(0xffff, _mm_loadu_ps(p))};
-    else if constexpr (sizeof(L) == 64 && sizeof(Real) == 8 && J == 2)
-      return {(V)_mm512_maskz_broadcast_f64x2(0xff, _mm_loadu_pd(p))};
-    else
-#endif
-        if constexpr (sizeof(L) == 32 && sizeof(Real) == 4 && J == 2)
-      return {(V)_mm256_castpd_ps(_mm256_broadcast_sd(reinterpret_cast<const double*>(p)))};
-    else {
-      L r;
-      for (int k = 0; k < N; ++k) r.v[k] = p[k % J];
-      return r;
-    }
-  }
-}
-
-/// Adds up the J lanes of each i, pairwise.
-template <int I, class Real, int N> inline Lanes<Real, I> sum_j(Lanes<Real, N> a) {
-  constexpr int J = N / I;
-  if constexpr (J == 1) return a;
-#if defined(__AVX512F__)
-  else if constexpr (J == 4 && N == 16) {
-    __m512 s = (__m512)a.v;
-    s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0xB1));
-    s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0x4E));
-    return {(typename Lanes<Real, I>::Native)_mm512_maskz_extractf32x4_ps(0xf, _mm512_maskz_compress_ps(0x1111, s), 0)};
-  }
-#endif
-  else {
-    Lanes<Real, I> sums;
-    for (int i = 0; i < I; ++i) {
-      Real s = 0;
-      for (int j = 0; j < J; ++j) s += a.v[i * J + j];
-      sums.v[i] = s;
-    }
-    return sums;
-  }
-}
-
 // ---- the particles of a cluster, side by side -----------------------------------------------------------------------
 
 template <int N, class Real> inline Lanes<Real, N> load(const Real* p) {
@@ -303,6 +243,78 @@ template <class Real, int N> inline Real largest(Lanes<Real, N> a) {
 /// Raises `most` to the largest lane. A running maximum seldom rises: one comparison nearly always.
 template <class Most, class Real, int N> inline void raise(Most& most, Lanes<Real, N> a) {
   if (!all_at_most(a, static_cast<Real>(most))) most = largest(a);
+}
+
+// ---- a cluster pair's lanes -----------------------------------------------------------------------------------------
+// I particles i against J particles j fill I × J = N lanes: lane k holds i = k / J and j = k % J.
+
+/// I values from memory, each repeated N / I times. (By hand: g++ 12 makes a gather of the loop, ten times as slow.)
+template <int I, class Real, int N> inline Lanes<Real, N> load_i(const Real* p) {
+  using V [[maybe_unused]] = typename Lanes<Real, N>::Native;
+  if constexpr (N == I) return load<N>(p);
+#if defined(__AVX512F__)
+  else if constexpr (N == 16 && I == 4)
+    return {(V)_mm512_maskz_permutexvar_ps(0xffff, _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3),
+                                           _mm512_castps128_ps512(_mm_loadu_ps(p)))};
+  else if constexpr (N == 8 && I == 4 && sizeof(Real) == 8)
+    return {(V)_mm512_maskz_permutexvar_pd(0xff, _mm512_setr_epi64(0, 0, 1, 1, 2, 2, 3, 3),
+                                           _mm512_castpd256_pd512(_mm256_loadu_pd(p)))};
+#endif
+  else if constexpr (N == 8 && I == 4 && sizeof(Real) == 4)
+    return {(V)_mm256_permutevar8x32_ps(_mm256_castps128_ps256(_mm_loadu_ps(p)),
+                                        _mm256_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3))};
+  else {
+    Lanes<Real, N> r;
+    for (int k = 0; k < N; ++k) r.v[k] = p[k / (N / I)];
+    return r;
+  }
+}
+
+/// J values from memory, the whole repeated N / J times.
+template <int J, class Real, int N> inline Lanes<Real, N> load_j(const Real* p) {
+  using L = Lanes<Real, N>;
+  if constexpr (J == 1)
+    return L(*p);
+  else {
+    using V = typename L::Native;
+#if defined(__AVX512F__)
+    if constexpr (sizeof(L) == 64 && sizeof(Real) == 4 && J == 4)
+      return {(V)_mm512_maskz_broadcast_f32x4(0xffff, _mm_loadu_ps(p))};
+    else if constexpr (sizeof(L) == 64 && sizeof(Real) == 8 && J == 2)
+      return {(V)_mm512_maskz_broadcast_f64x2(0xff, _mm_loadu_pd(p))};
+    else
+#endif
+        if constexpr (sizeof(L) == 32 && sizeof(Real) == 4 && J == 2)
+      return {(V)_mm256_castpd_ps(_mm256_broadcast_sd(reinterpret_cast<const double*>(p)))};
+    else {
+      L r;
+      for (int k = 0; k < N; ++k) r.v[k] = p[k % J];
+      return r;
+    }
+  }
+}
+
+/// Adds up the J lanes of each i, pairwise.
+template <int I, class Real, int N> inline Lanes<Real, I> sum_j(Lanes<Real, N> a) {
+  constexpr int J = N / I;
+  if constexpr (J == 1) return a;
+#if defined(__AVX512F__)
+  else if constexpr (J == 4 && N == 16) {
+    __m512 s = (__m512)a.v;
+    s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0xB1));
+    s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0x4E));
+    return {(typename Lanes<Real, I>::Native)_mm512_maskz_extractf32x4_ps(0xf, _mm512_maskz_compress_ps(0x1111, s), 0)};
+  }
+#endif
+  else {
+    Lanes<Real, I> sums;
+    for (int i = 0; i < I; ++i) {
+      Real s = 0;
+      for (int j = 0; j < J; ++j) s += a.v[i * J + j];
+      sums.v[i] = s;
+    }
+    return sums;
+  }
 }
 
 // ---- lists of numbers -----------------------------------------------------------------------------------------------
