@@ -104,7 +104,7 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
         slack_(static_cast<float>(range_ + list_.settings_.skin)) {
     for (int s = 0; s < shells; ++s) {
       const double range = list_.range(order, s);
-      reach2_[s] = Wide(static_cast<Real>(range * range));
+      for (int g = 0; g < clusters_a_row; ++g) reach2_[flag(g, s)] = static_cast<Real>(range * range);
     }
   }
 
@@ -130,7 +130,10 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
   static constexpr int along = Dim - 1;
   static constexpr int N = native_lanes<Real>, I = cluster_size, J = N / I;
   using Wide = Lanes<Real, N>;
-  static_assert(N >= cluster_size && clusters_a_row * shells <= 16 && shells == 3 && shell_bits == 2);
+  static_assert(N >= cluster_size && clusters_a_row == 4 && shells == 3 && shell_bits == 2);
+
+  /// Of the row's cluster g and a shell: which bit.
+  static constexpr int flag(int g, int shell) { return shell * clusters_a_row + g; }
 
   struct Row {
     std::uint32_t begin, end;  // clusters
@@ -273,7 +276,7 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
     masks_.resize(low + shell_bits * words);
     for (std::size_t w = 0; w < words; ++w) {
       std::array<unsigned, shells> in;
-      for (int s = 0; s < shells; ++s) in[s] = gather_bit(flags_.data() + w * ClusterChunk::mask_bits, g * shells + s);
+      for (int s = 0; s < shells; ++s) in[s] = gather_bit(flags_.data() + w * ClusterChunk::mask_bits, flag(g, s));
       masks_[low + w] = static_cast<std::uint16_t>(in[0] | (in[2] & ~in[1]));
       masks_[high + w] = static_cast<std::uint16_t>(in[2] & ~in[0]);
     }
@@ -290,7 +293,7 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
     }
   }
 
-  /// Bit g · shells + s: is a particle of a cluster within shell s of one of the row's cluster g?
+  /// Bit flag(g, s): is a particle of a cluster within shell s of one of the row's cluster g?
   std::uint16_t meetings(std::uint32_t other, const Target& target, std::int32_t further) const {
     Vec<Dim, Wide> shift;
     for (int d = 0; d < along; ++d) shift[d] = Wide(static_cast<Real>(target.shift[d]));
@@ -306,18 +309,14 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
         nearest[g] = min(nearest[g], dot(way, way));
       }
     }
-    unsigned flags = 0;
-    for (std::uint32_t g = 0; g < own_count_; ++g)
-      for (int s = 0; s < shells; ++s)
-        flags |= static_cast<unsigned>(any_less(nearest[g], reach2_[s])) << (g * shells + s);
-    return static_cast<std::uint16_t>(flags);
+    return static_cast<std::uint16_t>(any_less_bits<clusters_a_row * shells>(nearest, reach2_));
   }
 
   const ClusterList& list_;
   const ClusterOrder<Dim>& order_;
   Column<LocalPosition, Dim, Real> local_;
   float range_, slack_;                             // m
-  std::array<Wide, shells> reach2_;                 // m²
+  std::array<Real, 16> reach2_{};                   // m², by flag
   std::array<Vec<Dim, Wide>, clusters_a_row> own_;  // of the row; own_count_ of them
   std::uint32_t own_count_ = 0;
   std::vector<Target> targets_;

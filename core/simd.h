@@ -6,6 +6,7 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -315,6 +316,30 @@ template <int I, class Real, int N> inline Lanes<Real, I> sum_j(Lanes<Real, N> a
     }
     return sums;
   }
+}
+
+/// Bit k: is a lane of a[k % 4] below bounds[k], k < Bounds?
+template <int Bounds, class Real, int N>
+inline unsigned any_less_bits(const std::array<Lanes<Real, N>, 4>& a, const std::array<Real, 16>& bounds) {
+#if defined(__AVX512F__)
+  if constexpr (N == 16) {
+    const auto of = [&](int k) { return (__m512)a[k].v; };
+    const auto least = [](__m512 x, __m512 y) { return _mm512_maskz_min_ps(0xffff, x, y); };
+    // In each block of four lanes: the least of a[0], a[1], a[2], a[3] there; then the least of the blocks.
+    const __m512 of_01 =
+        least(_mm512_maskz_unpacklo_ps(0xffff, of(0), of(1)), _mm512_maskz_unpackhi_ps(0xffff, of(0), of(1)));
+    const __m512 of_23 =
+        least(_mm512_maskz_unpacklo_ps(0xffff, of(2), of(3)), _mm512_maskz_unpackhi_ps(0xffff, of(2), of(3)));
+    __m512 m =
+        least(_mm512_maskz_shuffle_ps(0xffff, of_01, of_23, 0x44), _mm512_maskz_shuffle_ps(0xffff, of_01, of_23, 0xEE));
+    m = least(m, _mm512_maskz_shuffle_f32x4(0xffff, m, m, 0x4E));
+    m = least(m, _mm512_maskz_shuffle_f32x4(0xffff, m, m, 0xB1));
+    return _mm512_cmp_ps_mask(m, _mm512_loadu_ps(bounds.data()), _CMP_LT_OQ) & ((1u << Bounds) - 1);
+  }
+#endif
+  unsigned bits = 0;
+  for (int k = 0; k < Bounds; ++k) bits |= static_cast<unsigned>(any_less(a[k % 4], Lanes<Real, N>(bounds[k]))) << k;
+  return bits;
 }
 
 // ---- lists of numbers -----------------------------------------------------------------------------------------------
