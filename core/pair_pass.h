@@ -189,8 +189,9 @@ template <int N, int Dim, class Real, class KernelType, class Finish, class... T
   }
 
   // Where the next pair lies is worked out before the present one's terms, so that its root is there in time: an eighth
-  // quicker, as long as all of it fits into 32 registers.
-  static constexpr bool looks_ahead = total_components<Reads, Dim> + total_components<Sums, Dim> <= 16;
+  // quicker, as long as all of it fits into the registers; with 16 of them it is slower.
+  static constexpr bool looks_ahead =
+      vector_registers == 32 && total_components<Reads, Dim> + total_components<Sums, Dim> <= 16;
   static constexpr int parts = cluster_size / J;  // of a neighbour cluster
 
   /// N pairs before the terms see them.

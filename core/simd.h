@@ -25,6 +25,13 @@ inline constexpr int native_lanes =
     32 / static_cast<int>(sizeof(Real));
 #endif
 
+inline constexpr int vector_registers =
+#if defined(__AVX512F__)
+    32;
+#else
+    16;
+#endif
+
 /// The compilers' vector types by name: g++ 12 does not take a vector size that depends on a template's parameters.
 template <class Real, int N> struct NativeVector;
 template <class Real> struct NativeVector<Real, 1> { typedef Real type; };
