@@ -282,33 +282,36 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
     }
   }
 
-  /// Positions of the row's particles from the origin of its first cluster.
+  /// Positions of the row's particles from the origin of its first cluster; far from all where a row has fewer
+  /// clusters.
   void load_own(const Row& row) {
     own_count_ = row.end - row.begin;
-    for (std::uint32_t g = 0; g < own_count_; ++g) {
+    for (std::uint32_t g = 0; g < clusters_a_row; ++g)
       for (int d = 0; d < Dim; ++d)
-        own_[g][d] = load_i<I, Real, N>(local_[d] + std::size_t{row.begin + g} * cluster_size);
+        own_[g][d] = g < own_count_ ? load_i<I, Real, N>(local_[d] + std::size_t{row.begin + g} * cluster_size)
+                                    : Wide(Real(1e18));
+    for (std::uint32_t g = 0; g < own_count_; ++g) {
       const std::int32_t further = order_.cells[row.begin + g][along] - order_.cells[row.begin][along];
       own_[g][along] += Wide(static_cast<Real>(further * order_.grid.width[along]));
     }
   }
 
   /// Bit flag(g, s): is a particle of a cluster within shell s of one of the row's cluster g?
-  std::uint16_t meetings(std::uint32_t other, const Target& target, std::int32_t further) const {
+  [[gnu::always_inline]] std::uint16_t meetings(std::uint32_t other, const Target& target, std::int32_t further) const {
     Vec<Dim, Wide> shift;
     for (int d = 0; d < along; ++d) shift[d] = Wide(static_cast<Real>(target.shift[d]));
     shift[along] = Wide(static_cast<Real>((further + target.segments) * order_.grid.width[along]));
     std::array<Wide, clusters_a_row> nearest;
-    nearest.fill(Wide(std::numeric_limits<Real>::max()));
-    for (int j = 0; j < cluster_size; j += J) {
+    unrolled<cluster_size / J>([&](auto part) {
       Vec<Dim, Wide> x;
-      unrolled<Dim>(
-          [&](auto d) { x[d] = load_j<J, Real, N>(local_[d] + std::size_t{other} * cluster_size + j) + shift[d]; });
-      for (std::uint32_t g = 0; g < own_count_; ++g) {
+      unrolled<Dim>([&](auto d) {
+        x[d] = load_j<J, Real, N>(local_[d] + std::size_t{other} * cluster_size + part * J) + shift[d];
+      });
+      unrolled<clusters_a_row>([&](auto g) {
         const Vec<Dim, Wide> way = own_[g] - x;
-        nearest[g] = min(nearest[g], dot(way, way));
-      }
-    }
+        nearest[g] = part == 0 ? dot(way, way) : min(nearest[g], dot(way, way));
+      });
+    });
     return static_cast<std::uint16_t>(any_less_bits<clusters_a_row * shells>(nearest, reach2_));
   }
 
