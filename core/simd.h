@@ -312,9 +312,17 @@ template <int I, class Real, int N> inline Lanes<Real, I> sum_j(Lanes<Real, N> a
     s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0xB1));
     s = _mm512_add_ps(s, _mm512_maskz_permute_ps(0xffff, s, 0x4E));
     return {(typename Lanes<Real, I>::Native)_mm512_maskz_extractf32x4_ps(0xf, _mm512_maskz_compress_ps(0x1111, s), 0)};
+  } else if constexpr (J == 2 && N == 8 && sizeof(Real) == 8) {
+    __m512d s = (__m512d)a.v;
+    s = _mm512_add_pd(s, _mm512_maskz_permute_pd(0xff, s, 0x55));
+    return {(typename Lanes<Real, I>::Native)_mm512_maskz_extractf64x4_pd(0xf, _mm512_maskz_compress_pd(0x55, s), 0)};
   }
 #endif
-  else {
+  else if constexpr (J == 2 && N == 8 && sizeof(Real) == 4) {
+    const __m256 s = _mm256_add_ps((__m256)a.v, _mm256_movehdup_ps((__m256)a.v));
+    return {(typename Lanes<Real, I>::Native)_mm256_castps256_ps128(
+        _mm256_permutevar8x32_ps(s, _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6)))};
+  } else {
     Lanes<Real, I> sums;
     for (int i = 0; i < I; ++i) {
       Real s = 0;
