@@ -25,32 +25,32 @@ template <int Dim, class T> struct Vec {
     return r;
   }
 
-  friend Vec operator+(const Vec& a, const Vec& b) {
+  [[gnu::always_inline]] friend Vec operator+(const Vec& a, const Vec& b) {
     Vec r;
     unrolled<Dim>([&](auto d) { r[d] = a[d] + b[d]; });
     return r;
   }
-  friend Vec operator-(const Vec& a, const Vec& b) {
+  [[gnu::always_inline]] friend Vec operator-(const Vec& a, const Vec& b) {
     Vec r;
     unrolled<Dim>([&](auto d) { r[d] = a[d] - b[d]; });
     return r;
   }
-  friend Vec operator*(const T& s, const Vec& a) {
+  [[gnu::always_inline]] friend Vec operator*(const T& s, const Vec& a) {
     Vec r;
     unrolled<Dim>([&](auto d) { r[d] = s * a[d]; });
     return r;
   }
-  Vec& operator+=(const Vec& b) {
+  [[gnu::always_inline]] Vec& operator+=(const Vec& b) {
     unrolled<Dim>([&](auto d) { c[d] += b[d]; });
     return *this;
   }
-  Vec& operator-=(const Vec& b) {
+  [[gnu::always_inline]] Vec& operator-=(const Vec& b) {
     unrolled<Dim>([&](auto d) { c[d] -= b[d]; });
     return *this;
   }
 };
 
-template <int Dim, class T> T dot(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
+template <int Dim, class T> [[gnu::always_inline]] inline T dot(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
   T s = a[0] * b[0];
   unrolled<Dim - 1>([&](auto d) { s = s + a[d + 1] * b[d + 1]; });
   return s;
@@ -72,17 +72,17 @@ template <int Dim, class T> struct SymTensor {
     return r;
   }
 
-  friend SymTensor operator+(const SymTensor& a, const SymTensor& b) {
+  [[gnu::always_inline]] friend SymTensor operator+(const SymTensor& a, const SymTensor& b) {
     SymTensor r;
     unrolled<size>([&](auto k) { r[k] = a[k] + b[k]; });
     return r;
   }
-  friend SymTensor operator*(const T& s, const SymTensor& a) {
+  [[gnu::always_inline]] friend SymTensor operator*(const T& s, const SymTensor& a) {
     SymTensor r;
     unrolled<size>([&](auto k) { r[k] = s * a[k]; });
     return r;
   }
-  SymTensor& operator+=(const SymTensor& b) {
+  [[gnu::always_inline]] SymTensor& operator+=(const SymTensor& b) {
     unrolled<size>([&](auto k) { c[k] += b[k]; });
     return *this;
   }
@@ -127,7 +127,7 @@ template <int Dim, class T>
 }
 
 /// tr S²
-template <int Dim, class T> T square_trace(const SymTensor<Dim, T>& s) {
+template <int Dim, class T> [[gnu::always_inline]] inline T square_trace(const SymTensor<Dim, T>& s) {
   T diagonal = T(0), off = T(0);
   unrolled<Dim>([&](auto k) { diagonal = diagonal + s[k] * s[k]; });
   unrolled<SymTensor<Dim, T>::size - Dim>([&](auto k) { off = off + s[Dim + k] * s[Dim + k]; });
