@@ -1,4 +1,5 @@
 // Small vectors and symmetric tensors whose components are numbers or lanes. For the hot loops; set-up code uses Eigen.
+// Always inlined: a call would spill all registers that hold lanes, and g++ 12 makes calls where vectors have 32 bytes.
 #pragma once
 
 #include <array>
