@@ -193,7 +193,7 @@ template <int Dim> int Contact<Dim>::Impl::move(Motion<Dim>& m, double dt, std::
     return 0;
   }
   double r = radius;
-  if (!few.known() || fixed.search->nearest_held(m.position, few).rank >= 0) few.forget(), r = settle(m.position);
+  if (!few.known() || fixed.search->is_held(m.position, few)) few.forget(), r = settle(m.position);
   Touching<Dim> touching;
   double now = 0;  // s since the start of the step
   for (int bounces = 0; bounces < most_bounces; ++bounces) {

@@ -86,16 +86,14 @@ bool SurfaceSearch<Dim>::any_within(const Point<Dim>& lower, const Point<Dim>& u
 
 template <int Dim>
 void SurfaceSearch<Dim>::meet_facet(FirstContact<Dim>& first, std::int32_t facet, const Point<Dim>& x,
-                                    const Point<Dim>& d, double r, bool inside) const {
+                                    const Point<Dim>& d, double r) const {
   const Facet<Dim>& f = surface_.facets()[facet];
-  const double height = f.normal.dot(x - f.corner[0]);
-  if (misses_slab(height, -f.normal.dot(d), r)) return;
-  const auto hit = sweep_facet(f, x, d, r, inside);
+  const double from = height(facet, x);
+  if (misses_slab(from, -f.normal.dot(d), r)) return;
+  const auto hit = sweep_facet(f, x, d, r);
   if (!hit) return;
-  // The centre has settled in front of all walls, so a face that holds from behind is the back of a thin plate.
-  if (hit->feature == Feature::face && height < -r / 2) return;
-  FirstContact<Dim> found{hit->t, hit->t, static_cast<std::int64_t>(planes_.size()) + facet, hit->normal,
-                          surface_.wall(facet)};
+  if (hit->feature == Feature::face && is_behind_plate(from, r)) return;
+  FirstContact<Dim> found{hit->t, hit->t, rank(facet), hit->normal, surface_.wall(facet)};
   if (hit->feature != Feature::face) {
     const Crease crease = surface_.crease(facet, hit->feature, hit->index);
     if (crease != Crease::rim &&
@@ -130,18 +128,18 @@ template <int Dim> FewFacets SurfaceSearch<Dim>::few_within(const Point<Dim>& x,
     if (at.further_than(radius_ + reach + side_slack_)) continue;
     if (few.count == FewFacets::most) return {};
     few.facet[few.count++] = facet;
-    few.inside = few.count == 1 && at.inside > reach + side_slack_;
+    few.inside = few.count == 1 && at.inside > reach + side_slack_ && planes_.empty();
   }
   return few;
 }
 
 template <int Dim>
-FirstContact<Dim> SurfaceSearch<Dim>::first_contact(const Point<Dim>& x, const Point<Dim>& d, double r,
-                                                    const FewFacets& few) const {
+FirstContact<Dim> SurfaceSearch<Dim>::search_contact(const Point<Dim>& x, const Point<Dim>& d, double r,
+                                                     const FewFacets& few) const {
   FirstContact<Dim> first;
   meet_planes(first, x, d, r);
   if (few.known())
-    for (const std::int32_t facet : few.list()) meet_facet(first, facet, x, d, r, few.inside);
+    for (const std::int32_t facet : few.list()) meet_facet(first, facet, x, d, r);
   else if (tree_alone_ || is_long(d))
     tree().sweep(x, d, [&](std::int32_t facet) {
       meet_facet(first, facet, x, d, r);
@@ -161,7 +159,6 @@ template <int Dim>
 void SurfaceSearch<Dim>::come_near(NearestWall<Dim>& best, std::int32_t facet, const Point<Dim>& x, double limit,
                                    bool past_rims) const {
   const Facet<Dim>& f = surface_.facets()[facet];
-  const double height = f.normal.dot(x - f.corner[0]);
   if (further_than<Dim>(f, x, std::min(limit, (1 + 1e-9) * best.key))) return;
   const auto near = nearest_point(f, x);
   if (!(near.distance < limit)) return;
@@ -169,10 +166,9 @@ void SurfaceSearch<Dim>::come_near(NearestWall<Dim>& best, std::int32_t facet, c
   const bool rim = surface_.crease(facet, near.feature, near.index) == Crease::rim;
   const Point<Dim> front = rim ? f.normal : surface_.pseudo_normal(facet, near.feature, near.index);
   const bool face = near.feature == Feature::face;
-  const bool behind = face ? height < 0 : away.dot(front) < -side_tolerance * near.distance;
+  const bool behind = face ? height(facet, x) < 0 : away.dot(front) < -side_tolerance * near.distance;
   if (behind && rim && !past_rims) return;
-  NearestWall<Dim> found{near.distance, near.distance, behind, static_cast<std::int64_t>(planes_.size()) + facet,
-                         near.point,    f.normal};
+  NearestWall<Dim> found{near.distance, near.distance, behind, rank(facet), near.point, f.normal};
   if (behind) found.key += skin_;  // of two sides equally near, the front counts
   if (!face) found.normal = behind || near.distance < skin_ ? front.normalized() : Point<Dim>(away / near.distance);
   if (std::tie(found.key, found.rank) < std::tie(best.key, best.rank)) best = found;

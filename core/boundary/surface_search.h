@@ -39,10 +39,10 @@ struct FewFacets {
   static constexpr int most = 4;
   std::array<std::int32_t, most> facet{};
   int count = -1;       // −1: more, or not known
-  bool inside = false;  // only one, and the sphere stays over its inside
+  bool inside = false;  // only one, and nothing else: the sphere stays over its inside
 
   bool known() const { return count >= 0; }
-  void forget() { count = -1; }
+  void forget() { count = -1, inside = false; }
   std::span<const std::int32_t> list() const { return {facet.data(), static_cast<std::size_t>(std::max(count, 0))}; }
 };
 
@@ -67,10 +67,16 @@ template <int Dim> class SurfaceSearch {
 
   /// What a sphere of radius r (m), at most that of the construction, meets first on its way from x to x + d. `few`:
   /// where they are known for all of the way, only they are looked at.
-  FirstContact<Dim> first_contact(const Point<Dim>& x, const Point<Dim>& d, double r, const FewFacets& few = {}) const;
+  FirstContact<Dim> first_contact(const Point<Dim>& x, const Point<Dim>& d, double r, const FewFacets& few = {}) const {
+    return few.inside ? meet_face(few.facet[0], x, d, r) : search_contact(x, d, r, few);
+  }
 
   /// The nearest wall within a radius that holds a particle at x: behind an open wall's rim nothing holds it.
   NearestWall<Dim> nearest_held(const Point<Dim>& x, const FewFacets& few = {}) const;
+  /// Whether there is one.
+  bool is_held(const Point<Dim>& x, const FewFacets& few) const {
+    return few.inside ? std::abs(height(few.facet[0], x)) < radius_ : nearest_held(x, few).rank >= 0;
+  }
 
   /// The nearest wall within `limit` (m) of x.
   NearestWall<Dim> nearest_any(const Point<Dim>& x, double limit) const;
@@ -83,9 +89,16 @@ template <int Dim> class SurfaceSearch {
 
   const FacetTree<Dim>& tree() const;
   bool is_long(const Point<Dim>& d) const;
+  double height(std::int32_t facet, const Point<Dim>& x) const {
+    const Facet<Dim>& f = surface_.facets()[facet];
+    return f.normal.dot(x - f.corner[0]);
+  }
+  std::int64_t rank(std::int32_t facet) const { return static_cast<std::int64_t>(planes_.size()) + facet; }
+  FirstContact<Dim> meet_face(std::int32_t facet, const Point<Dim>& x, const Point<Dim>& d, double r) const;
+  FirstContact<Dim> search_contact(const Point<Dim>& x, const Point<Dim>& d, double r, const FewFacets& few) const;
   void meet_planes(FirstContact<Dim>& first, const Point<Dim>& x, const Point<Dim>& d, double r) const;
-  void meet_facet(FirstContact<Dim>& first, std::int32_t facet, const Point<Dim>& x, const Point<Dim>& d, double r,
-                  bool inside = false) const;
+  void meet_facet(FirstContact<Dim>& first, std::int32_t facet, const Point<Dim>& x, const Point<Dim>& d,
+                  double r) const;
   void come_near(NearestWall<Dim>& best, std::int32_t facet, const Point<Dim>& x, double limit, bool past_rims) const;
   void come_near_planes(NearestWall<Dim>& best, const Point<Dim>& x, double limit) const;
 
@@ -100,5 +113,17 @@ template <int Dim> class SurfaceSearch {
   mutable std::once_flag planted_;      // the tree grows when it is first wanted
   mutable std::unique_ptr<FacetTree<Dim>> tree_;
 };
+
+/// Over a facet's inside only its face can be met: what sweep_facet and meet_facet come to there, to the bit.
+template <int Dim>
+inline FirstContact<Dim> SurfaceSearch<Dim>::meet_face(std::int32_t facet, const Point<Dim>& x, const Point<Dim>& d,
+                                                       double r) const {
+  const Point<Dim>& normal = surface_.facets()[facet].normal;
+  const double from = height(facet, x), descent = -normal.dot(d);
+  if (misses_slab(from, descent, r) || is_behind_plate(from, r) || d.isZero(0)) return {};
+  if (!(from > r) && !approaches<Dim>(d, normal)) return {};
+  const double t = from > r ? std::min((from - r) / descent, 1.0) : 0;
+  return {t, t, rank(facet), normal, surface_.wall(facet)};
+}
 
 }  // namespace molten

@@ -179,15 +179,14 @@ template <int Dim> bool further_than(const Facet<Dim>& f, const Point<Dim>& x, d
 }
 
 template <int Dim>
-std::optional<SweepHit<Dim>> sweep_facet(const Facet<Dim>& f, const Point<Dim>& x, const Point<Dim>& d, double radius,
-                                         bool inside) {
+std::optional<SweepHit<Dim>> sweep_facet(const Facet<Dim>& f, const Point<Dim>& x, const Point<Dim>& d, double radius) {
   const double height = f.normal.dot(x - f.corner[0]), descent = -f.normal.dot(d), end = height - descent;
   if (misses_slab(height, descent, radius) || d.isZero(0)) return {};
   const double least = height * end > 0 ? std::min(std::abs(height), std::abs(end)) : 0;
-  if (!inside && passes_beside(f, x, d, least, radius)) return {};
+  if (passes_beside(f, x, d, least, radius)) return {};
   if (std::abs(height) > radius) {  // so it nears: the plane is met before any edge, and counts if over the inside
     const double t = std::min((std::abs(height) - radius) / std::abs(descent), 1.0);
-    if (inside || covers(f, Point<Dim>(x + t * d))) {
+    if (covers(f, Point<Dim>(x + t * d))) {
       if (height < 0) return {};
       return SweepHit<Dim>{t, f.normal, Feature::face, 0};
     }
@@ -217,7 +216,7 @@ std::optional<SweepHit<Dim>> sweep_plane(const Point<Dim>& point, const Point<Di
   template NearestPoint<Dim> nearest_point<Dim>(const Facet<Dim>&, const Point<Dim>&);                            \
   template bool further_than<Dim>(const Facet<Dim>&, const Point<Dim>&, double);                                  \
   template std::optional<SweepHit<Dim>> sweep_facet<Dim>(const Facet<Dim>&, const Point<Dim>&, const Point<Dim>&, \
-                                                         double, bool);                                           \
+                                                         double);                                                 \
   template std::optional<SweepHit<Dim>> sweep_plane<Dim>(const Point<Dim>&, const Point<Dim>&, const Point<Dim>&, \
                                                          const Point<Dim>&, double);
 MOLTEN_SWEEP(2)

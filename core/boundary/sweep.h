@@ -49,8 +49,12 @@ template <int Dim> struct SweepHit {
 inline constexpr double sliding_tolerance = 1e-12, side_tolerance = 1e-9;
 
 template <int Dim> bool approaches(const Point<Dim>& u, const Point<Dim>& normal) {
-  return u.dot(normal) < -sliding_tolerance * u.norm();
+  const double along = u.dot(normal);
+  return along < 0 && along < -sliding_tolerance * u.norm();  // most do not, and need no root
 }
+
+/// The centre has settled in front of all walls, so a face that it is this far behind is the back of a thin plate.
+inline bool is_behind_plate(double height, double radius) { return height < -radius / 2; }
 
 /// True if a path whose height above a plane starts at `height` (m) and falls by `descent` (m) stays clear of it.
 inline bool misses_slab(double height, double descent, double radius) {
@@ -60,10 +64,10 @@ inline bool misses_slab(double height, double descent, double radius) {
 
 /// The sphere at x moves by d (m). A contact is where it first touches the facet with its centre on the front side; an
 /// overlap at the start that is approaching is a contact at t = 0, also when the centre is behind the face by up to one
-/// radius. `inside`: all of the way is known to be over the facet's inside.
+/// radius.
 template <int Dim>
 std::optional<SweepHit<Dim>> sweep_facet(const Facet<Dim>& facet, const Point<Dim>& x, const Point<Dim>& d,
-                                         double radius, bool inside = false);
+                                         double radius);
 
 /// The same for the infinite plane through `point` with the unit normal `normal`.
 template <int Dim>
