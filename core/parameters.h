@@ -52,11 +52,14 @@ template <int Dim> struct Parameters {
   std::vector<Plane> outflows;
 };
 
-/// The largest time step of conduction (s).
-template <int Dim> double conduction_limit(const Parameters<Dim>& p) {
-  constexpr double conduction_constant = 3.5;  // h² ∫|W'|/r of the Wendland kernel, the largest of the common ones
-  return p.courant_conduction * p.smoothing_length * p.smoothing_length / (2 * conduction_constant * p.diffusivity);
+/// The largest time step (s) of a diffusion (m²/s): conduction, or δ-SPH's, whose diffusivity is δ h c.
+template <int Dim> double diffusion_limit(const Parameters<Dim>& p, double diffusivity) {
+  constexpr double diffusion_constant = 3.5;  // h² ∫|W'|/r of the Wendland kernel, the largest of the common ones
+  return p.courant_conduction * p.smoothing_length * p.smoothing_length / (2 * diffusion_constant * diffusivity);
 }
+
+/// The largest time step of conduction (s).
+template <int Dim> double conduction_limit(const Parameters<Dim>& p) { return diffusion_limit(p, p.diffusivity); }
 
 /// What the start of a run is made of: the filled bodies, one entry a particle.
 struct Start {

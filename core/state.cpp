@@ -23,6 +23,8 @@ const char* name_of(Limit limit) {
       return "fixed";
     case Limit::output:
       return "output";
+    case Limit::density_diffusion:
+      return "density diffusion";
   }
   return "";
 }

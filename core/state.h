@@ -23,7 +23,7 @@
 namespace molten {
 
 /// Which bound set the time step.
-enum class Limit : int { sound, viscous, force, conduction, fixed, output };
+enum class Limit : int { sound, viscous, force, conduction, fixed, output, density_diffusion };
 const char* name_of(Limit limit);
 
 struct Clock {

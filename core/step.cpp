@@ -153,6 +153,8 @@ template <int Dim, class Real> void choose_time_step(State<Dim, Real>& s) {
     limit(p.courant_sound * h / (p.eos.sound_speed + fastest), Limit::sound);
     limit(p.courant_force * std::sqrt(h / (std::sqrt(s.extremes.acceleration2) + 1e-300)), Limit::force);
     if (p.diffusivity > 0) limit(conduction_limit(p), Limit::conduction);
+    if (p.density_diffusion > 0)
+      limit(diffusion_limit(p, p.density_diffusion * h * p.eos.sound_speed), Limit::density_diffusion);
     if (s.extremes.kinematic_viscosity > 0) {
       const double viscous = viscous_limit(s, s.extremes.kinematic_viscosity);
       const double longest = std::ldexp(viscous, p.time_step_levels);

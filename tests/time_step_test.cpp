@@ -76,6 +76,14 @@ TEST(TimeStep, Conduction) {
   EXPECT_NEAR(clock.dt, 0.4 * smoothing_length * smoothing_length / (2 * 3.5 * 10), 1e-15);
 }
 
+TEST(TimeStep, DensityDiffusion) {
+  Scene scene = plain_scene(2);
+  scene.numerics.density_diffusion = 0.5;
+  const Clock clock = clock_after_a_step(scene);
+  EXPECT_EQ(clock.limit, Limit::density_diffusion);
+  EXPECT_NEAR(clock.dt, 0.4 * smoothing_length / (2 * 3.5 * 0.5 * 10), 1e-15);
+}
+
 TEST(TimeStep, Fixed) {
   Scene scene = plain_scene(2);
   scene.numerics.fixed_dt = 1e-4;
