@@ -109,6 +109,29 @@ TEST(WallFlow, ABeltCountsAlongItselfAlone) {
   EXPECT_NE(accelerations({1, 0}), accelerations({2, 0}));
 }
 
+// Fluid that leaves a wall together keeps its density, unless it is pressed; fluid that nears one gets denser.
+TEST(WallFlow, AWallDoesNotStretchFluidThatLeavesIt) {
+  const auto rate_beside_wall = [](double speed, double compressed) {
+    const Channel c{.rows = 8};
+    Start start = lattice(2, {8, c.rows / 2, 0}, 1.0 / c.rows);  // the lower half, far from the upper wall
+    start.velocity.assign(start.position.size(), {0, speed, 0});
+    const Scene scene = channel_scene(c, 1);
+    const auto p = parameters_of<2>(scene, start);
+    auto s = make_state<2, double>(features_of(scene), p, Contact<2>(walls_of(c), p.contact_radius, p.support_radius),
+                                   start);
+    for_each_particle(s, [&](std::size_t slot) { s.particles[compression][0][slot] = compressed; });
+    find_rates(s);
+    double rate = 0;
+    for_each_particle(s, [&](std::size_t slot) {
+      if (s.particles[position][1][slot] < 1.0 / c.rows) rate = s.particles[compression_rate][0][slot];
+    });
+    return rate;
+  };
+  EXPECT_NEAR(rate_beside_wall(1, -1e-4), 0, 1e-9);
+  EXPECT_LT(rate_beside_wall(1, 1e-4), -1);
+  EXPECT_GT(rate_beside_wall(-1, -1e-4), 1);
+}
+
 TEST(WallFlow, Conduction) {
   EXPECT_LT((error_of<double>({.rows = 16, .heated = true}, linear)), 0.005);
   EXPECT_LT((error_of<float>({.rows = 16, .heated = true, .smoothing_ratio = 1.3}, linear)), 0.005);
