@@ -82,6 +82,9 @@ TEST(TimeStep, DensityDiffusion) {
   const Clock clock = clock_after_a_step(scene);
   EXPECT_EQ(clock.limit, Limit::density_diffusion);
   EXPECT_NEAR(clock.dt, 0.4 * smoothing_length / (2 * 3.5 * 0.5 * 10), 1e-15);
+
+  scene.numerics.integrator = IntegratorKind::symplectic_euler;
+  EXPECT_NEAR(clock_after_a_step(scene).dt, 0.64 * clock.dt, 1e-15);
 }
 
 TEST(TimeStep, Fixed) {
