@@ -21,7 +21,7 @@ Setup dam_break(const DamBreak& d) {
   s.scene = scene_head(d.dimensions, g) + fluid_text(d.dimensions, d.spacing, density) +
             fmt::format("[[boundary]]\nbox = {}\ninside = true\nslip = {:.17g}\n", box_text(d.dimensions, {}, d.tank),
                         d.slip) +
-            "[numerics]\n" + wall_support_text();
+            "[numerics]\n" + std::string(impact_text) + wall_support_text(0.2);
   if (d.gate > 0) s.scene += gate_text(d.column[0], d.column[1] + 5 * d.spacing, d.spacing, d.gate);
   s.start = lattice(d.dimensions, {}, size, d.spacing);
   for (const Triple& x : s.start.position) s.pressure.push_back(density * gravity * (size[up] - x[up]));

@@ -134,7 +134,7 @@ Case lobovsky_front() {
           "column 0.6 m wide in a tank of 1.61 m (Lobovský et al. 2014); relative rms of the front, raw and after a "
           "shift in time, and the arrival at the wall",
           "particles a height of the column",
-          60,
+          120,
           8,
           {{"height", 0.6, "of the column, m"}, slip, gate_parameter(4.53)},
           run_lobovsky_front};

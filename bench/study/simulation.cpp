@@ -120,11 +120,17 @@ void push_step(Numerics& n, double factor) {
   if (n.fixed_dt) *n.fixed_dt *= factor;
 }
 
-/// The methods kept for replication have no support at walls.
-std::string without_support(const std::string& preset, std::string text) {
-  const std::string support = wall_support_text();
-  const std::size_t at = text.find(support);
-  if ((preset == "dias" || preset == "queiroz") && at != std::string::npos) text.erase(at, support.size());
+std::string without(std::string text, std::string_view part) {
+  const std::size_t at = text.find(part);
+  return at == std::string::npos ? text : text.erase(at, part.size());
+}
+
+/// The sources' presets keep their own smoothing lengths; the methods kept for replication have no support at walls.
+std::string as_in_source(const std::string& preset, std::string text) {
+  const bool replicates = preset == "dias" || preset == "queiroz";
+  if (replicates || preset == "paiva") text = without(text, impact_text);
+  if (replicates)
+    for (const double diffusion : {0.1, 0.2}) text = without(text, wall_support_text(diffusion));
   return text;
 }
 
@@ -143,7 +149,7 @@ std::string text_for(const std::string& preset, std::string text) {
 std::unique_ptr<Simulation> Simulation::make(const Request& request, const Setup& setup, Report& report) {
   std::vector<std::string> overrides{fmt::format("numerics.preset=\"{}\"", request.numerics)};
   overrides.insert(overrides.end(), request.scene_overrides.begin(), request.scene_overrides.end());
-  Scene scene = parse_scene(text_for(request.numerics, without_support(request.numerics, setup.scene)), "case", overrides);
+  Scene scene = parse_scene(text_for(request.numerics, as_in_source(request.numerics, setup.scene)), "case", overrides);
   push_step(scene.numerics, request[step_factor]);
   if (scene.dimensions == 2) return make_engine<2>(scene, setup, report);
   return make_engine<3>(scene, setup, report);
