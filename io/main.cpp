@@ -80,9 +80,9 @@ void add_render(CLI::App& app, Commands& c) {
   render->add_option("--frames", c.render.frames, "all, last, numbers 0,10,20 or a range 0:100:10")
       ->capture_default_str();
   render->add_option("--field", p.field, "Field to colour by (default: temperature, else speed)");
-  render->add_option("--range", p.range, "Lowest and highest value of the colours");
-  render->add_option("--eye", p.eye, "Where the camera is: x y z, m");
-  render->add_option("--look-at", p.look_at, "Where it looks: x y z, m");
+  render->add_option("--range", p.range, "Lowest and highest value of the colours")->delimiter(',');
+  render->add_option("--eye", p.eye, "Where the camera is: x y z, m")->delimiter(',');
+  render->add_option("--look-at", p.look_at, "Where it looks: x y z, m")->delimiter(',');
   render->add_option("--azimuth", p.azimuth, "Direction of view about the vertical, degrees")->capture_default_str();
   render->add_option("--elevation", p.elevation, "Height of view, degrees")->capture_default_str();
   render->add_option("--zoom", p.zoom, "Larger is closer")->capture_default_str()->check(CLI::PositiveNumber);

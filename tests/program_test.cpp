@@ -210,6 +210,11 @@ TEST_F(Commands, RenderDraws) {
   EXPECT_EQ(o.code, 0) << o.err;
   EXPECT_EQ(o.out, (out / "pictures/000002.png").string() + "\n");
   EXPECT_TRUE(read_bytes(out / "pictures/000002.png").starts_with("\x89PNG"));
+  for (const std::vector<std::string>& range : {std::vector<std::string>{"0,1"}, {"0", "1"}}) {
+    std::vector<std::string> words{"render", out.string(), "--frames", "last", "--width", "64", "--range"};
+    words.insert(words.end(), range.begin(), range.end());
+    EXPECT_EQ(molten_program(words).code, 0);
+  }
   expect_refused(molten_program({"render", out.string(), "--frames", "9"}), 2, {"frames 0 to 2"});
   expect_refused(molten_program({"render", out.string(), "--field", "colour"}), 2, {"colour"});
 }
