@@ -51,20 +51,24 @@ double arm_of(const Scene& scene, const Extent& extent) {
   return std::sqrt(diagonal2) / 2;
 }
 
-/// The fluid follows walls, and what is much faster than sound counts as a run that blew up.
-void require_slow_walls(const Scene& scene, const Extent& extent, double sound_speed) {
+/// The fluid follows what drives it, and what is much faster than sound counts as a run that blew up.
+void require_slow(const Scene& scene, const std::string& key, double speed, double sound_speed) {
   constexpr double fastest = 3e8, most = 30;  // m/s, of light; sound speeds
+  if (!(speed < fastest))
+    refuse(scene, key, "moves faster than light; give lengths in m, times in s and spins in degrees/s");
+  if (speed > most * sound_speed)
+    refuse(scene, key,
+           "moves at " + std::to_string(speed) + " m/s, more than 30 times the sound speed of " +
+               std::to_string(sound_speed) + " m/s; slow it down or raise numerics.sound_speed");
+}
+
+void require_slow_drives(const Scene& scene, const Start& start, const Extent& extent, double sound_speed) {
   for (std::size_t k = 0; k < scene.boundaries.size(); ++k) {
     const Boundary& b = scene.boundaries[k];
-    const double speed = speed_of(b, arm_of(scene, extent));
     const std::string key = "boundary." + std::to_string(k) + (b.motion ? ".motion" : b.body ? ".body" : ".velocity");
-    if (!(speed < fastest))
-      refuse(scene, key, "moves faster than light; give velocities in m/s, spins in degrees/s and times in s");
-    if (speed > most * sound_speed)
-      refuse(scene, key,
-             "moves at " + std::to_string(speed) + " m/s, more than 30 times the sound speed of " +
-                 std::to_string(sound_speed) + " m/s; slow it down or raise numerics.sound_speed");
+    require_slow(scene, key, speed_of(b, arm_of(scene, extent)), sound_speed);
   }
+  require_slow(scene, "vent", start.vent_speed, sound_speed);
 }
 
 /// Ten times the speed that the fluid reaches by falling its own height, or that fluid, walls or vents start with.
@@ -198,7 +202,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
            n.gamma};
   if (n.state_equation == StateEquation::ideal_gas)
     p.eos.sound_speed = std::sqrt(n.stiffness.value_or(p.eos.sound_speed * p.eos.sound_speed));
-  require_slow_walls(scene, extent, p.eos.sound_speed);
+  require_slow_drives(scene, start, extent, p.eos.sound_speed);
   if (scene.fluid.hydrostatic) p.surface_potential = surface_potential(scene, start);
   const Rheology& r = scene.fluid.rheology;
   p.viscosity = r.viscosity;

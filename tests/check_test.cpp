@@ -55,6 +55,17 @@ TEST_F(CheckTest, RefusesWallsFasterThanTheFluidCanFollow) {
   expect_bad(moving("motion = { key_frames = [[0, 0, 0], [1e-20, 1, 0]] }"), 2, {"boundary.1.motion: moves faster"});
   expect_bad(moving("motion = { velocity = [4000, 0] }") + "[numerics]\nsound_speed = 100\n", 2,
              {"boundary.1.motion: moves at 4000", "raise numerics.sound_speed"});
+  const std::string vent = "[[vent]]\ndisc = { centre = [5, 5], normal = [0, 1], radius = 0.05 }\nrate = ";
+  expect_bad(block_scene + vent + "1e9\n", 2, {":", "vent: moves faster than light"});
+  expect_bad(block_scene + vent + "400\n[numerics]\nsound_speed = 100\n", 2, {"vent: moves at", "raise numerics.sound"});
+}
+
+TEST_F(CheckTest, RefusesAnOutflowThatTakesAllFluid) {
+  const auto outflow = [](const std::string& normal) {
+    return block_scene + "[[outflow]]\nplane = { point = [5, 0], normal = " + normal + " }\n";
+  };
+  expect_bad(outflow("[-1, 0]"), 3, {"outflow.0: all of the fluid starts beyond its plane; turn its normal"});
+  EXPECT_EQ(molten_program({"check", scene(outflow("[1, 0]")).string()}).code, 0);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ std::string text(double value) {
 }
 
 std::string first_at(const Vec3& v) {
-  return ", the first at (" + text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + ") m";
+  return ", the first at (" + text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + ") of the file";
 }
 
 }  // namespace
