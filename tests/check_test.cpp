@@ -66,6 +66,8 @@ TEST_F(CheckTest, RefusesAnOutflowThatTakesAllFluid) {
   };
   expect_bad(outflow("[-1, 0]"), 3, {"outflow.0: all of the fluid starts beyond its plane; turn its normal"});
   EXPECT_EQ(molten_program({"check", scene(outflow("[1, 0]")).string()}).code, 0);
+  const std::string vent = "[[vent]]\ndisc = { centre = [9, 5], normal = [0, 1], radius = 0.05 }\nrate = 0.01\n";
+  expect_bad(outflow("[1, 0]") + vent, 3, {"outflow.0: a vent lets fluid in beyond its plane"});
 }
 
 }  // namespace

@@ -100,19 +100,21 @@ void require_in_domain(const Scene& scene, const Start& start) {
                         scene.file, x[0], x[1], x[2]));
 }
 
-/// An outflow that takes the whole of the fluid looks the wrong way.
+/// An outflow that takes the whole of the fluid, or what a vent lets in, looks the wrong way.
 void require_before_outflows(const Scene& scene, const Start& start) {
   const auto beyond = [&](const Plane& p, const Place3& x) {
     double way = 0;
     for (int d = 0; d < scene.dimensions; ++d) way += p.normal[d] * (x[d] - p.point[d]);
     return way > 0;
   };
-  for (std::size_t k = 0; k < scene.outflows.size() && !start.position.empty(); ++k)
-    if (std::all_of(start.position.begin(), start.position.end(),
-                    [&](const Place3& x) { return beyond(scene.outflows[k], x); }))
-      throw Error(ExitCode::geometry, fmt::format("{}: outflow.{}: all of the fluid starts beyond its plane; turn its "
-                                                  "normal to the side where fluid is removed",
-                                                  scene.file, k));
+  for (std::size_t k = 0; k < scene.outflows.size(); ++k) {
+    const auto taken = [&](const Place3& x) { return beyond(scene.outflows[k], x); };
+    const bool all = !start.position.empty() && std::all_of(start.position.begin(), start.position.end(), taken);
+    if (all || std::any_of(start.vents.begin(), start.vents.end(), taken))
+      throw Error(ExitCode::geometry,
+                  fmt::format("{}: outflow.{}: {} beyond its plane; turn its normal to the side where fluid is removed",
+                              scene.file, k, all ? "all of the fluid starts" : "a vent lets fluid in"));
+  }
 }
 
 }  // namespace
