@@ -57,7 +57,8 @@ TEST_F(CheckTest, RefusesWallsFasterThanTheFluidCanFollow) {
              {"boundary.1.motion: moves at 4000", "raise numerics.sound_speed"});
   const std::string vent = "[[vent]]\ndisc = { centre = [5, 5], normal = [0, 1], radius = 0.05 }\nrate = ";
   expect_bad(block_scene + vent + "1e9\n", 2, {":", "vent: moves faster than light"});
-  expect_bad(block_scene + vent + "400\n[numerics]\nsound_speed = 100\n", 2, {"vent: moves at", "raise numerics.sound"});
+  expect_bad(block_scene + vent + "400\n[numerics]\nsound_speed = 100\n", 2,
+             {"vent: moves at", "raise numerics.sound"});
 }
 
 TEST_F(CheckTest, RefusesAnOutflowThatTakesAllFluid) {

@@ -85,6 +85,14 @@ TEST_F(Diverging, SpeedsWhoseSquareOverflowsAreNamed) {
   EXPECT_TRUE(contains(last_line(o.err), "velocity is not finite")) << o.err;
 }
 
+TEST_F(Diverging, ASoundSpeedThatLetsTheFluidCollapseIsNoticedOnce) {
+  const Outcome o = run(block_scene, {"--set", "numerics.sound_speed=1", "--set", "run.end_time=0.15"});
+  const std::size_t first = o.err.find("note: at t = 0.");
+  ASSERT_NE(first, std::string::npos) << o.err;
+  EXPECT_TRUE(contains(o.err, "raise numerics.sound_speed above 1 m/s")) << o.err;
+  EXPECT_EQ(o.err.find("note: at t = ", first + 1), std::string::npos) << o.err;
+}
+
 TEST_F(Diverging, HeatThatRunsAwayIsNoticed) {
   const std::string hot =
       replaced(block_scene, "[run]", "[fluid.heat]\ndiffusivity = 1.0\ninitial = { bottom = 1, top = 9 }\n[run]");

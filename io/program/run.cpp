@@ -153,6 +153,20 @@ template <int Dim, class Real> class Runner {
     series_->add(state_.clock, d);
     ++ledger_.rows;
     last_row_step_ = state_.clock.step;
+    if (d.max_compression > much_compression && !said_compression_) say_compression(d.max_compression);
+  }
+
+  /// Once a run: liquids whose density is far from theirs are not what was asked for. Gases may be.
+  void say_compression(double compression) {
+    const EquationOfState& eos = state_.parameters.eos;
+    if (eos.kind == StateEquation::ideal_gas) return;
+    if (progress_) progress_->finish();
+    fmt::print(
+        stderr,
+        "note: at t = {:.4g} s the density is up to {:.0f} % off: raise numerics.sound_speed above {:.3g} m/s, or "
+        "give the fluid more room\n",
+        state_.clock.time, 100 * compression, eos.sound_speed);
+    said_compression_ = true;
   }
 
   void write_snapshot() {
@@ -234,6 +248,8 @@ template <int Dim, class Real> class Runner {
   std::int64_t last_row_step_ = -1;
   std::optional<Series> series_;
   std::optional<Progress> progress_;
+  static constexpr double much_compression = 0.3;
+  bool said_compression_ = false;
   std::chrono::steady_clock::time_point last_checkpoint_;
 };
 

@@ -124,18 +124,19 @@ TEST(Hydrostatic, TankOf20) { expect_rest(settle<2, double>({}), 0.01, 1e-6); }
 
 TEST(Hydrostatic, TankOf8In3D) { expect_rest(settle<3, float>({.deep = 8, .wide = 6, .end_time = 5}), 0.03, 2e-5); }
 
-// 0.95 and 0.84 %, mostly because at 1.3 spacings the lattice buckles; at 1.5, as in bench/study/hydrostatic.cpp, it is
-// 0.28 %.
-TEST(SlowHydrostatic, TankOf40) { expect_rest(settle<2, float>({.deep = 40, .wide = 40}), 0.01, 1e-6); }
-
-// At 80 the pressure is within 0.60 %, the bottom's within 0.54 %; the lattice that buckles keeps 1.2e-6 of kinetic
-// energy, where at 1.5 spacings it is less than 1e-6.
-TEST(SlowHydrostatic, TankOf80) {
-  expect_rest(settle<2, float>({.deep = 40, .wide = 20}), 0.01, 1e-6);
-  expect_rest(settle<2, float>({.deep = 80, .wide = 20}), 0.01, 2e-6);
+// At 1.3 spacings a lattice buckles under its own weight, and what it comes to varies with the machine: on one, 40 deep
+// and 20 wide, 1.03e-6 of kinetic energy, and in 3-D a pressure 1.2 % off. So 1.5, as in bench/study/hydrostatic.cpp.
+TEST(SlowHydrostatic, TankOf40) {
+  expect_rest(settle<2, float>({.deep = 40, .wide = 40, .smoothing_ratio = 1.5}), 0.01, 1e-6);
 }
 
-TEST(SlowHydrostatic, TankOf40In3D) { expect_rest(settle<3, float>({.deep = 40, .wide = 10}), 0.01, 1e-6); }
+TEST(SlowHydrostatic, TankOf80) {
+  expect_rest(settle<2, float>({.deep = 80, .wide = 20, .smoothing_ratio = 1.5}), 0.01, 1e-6);
+}
+
+TEST(SlowHydrostatic, TankOf40In3D) {
+  expect_rest(settle<3, float>({.deep = 40, .wide = 10, .smoothing_ratio = 1.5}), 0.01, 1e-6);
+}
 
 }  // namespace
 }  // namespace molten
