@@ -124,12 +124,11 @@ TEST(Hydrostatic, TankOf20) { expect_rest(settle<2, double>({}), 0.01, 1e-6); }
 
 TEST(Hydrostatic, TankOf8In3D) { expect_rest(settle<3, float>({.deep = 8, .wide = 6, .end_time = 5}), 0.03, 2e-5); }
 
-// At 1.3 spacings a lattice buckles under its own weight, and what it comes to varies with the machine: on one, 40 deep
-// and 20 wide, 1.03e-6 of kinetic energy, and in 3-D a pressure 1.2 % off. So 1.5, as in bench/study/hydrostatic.cpp.
-TEST(SlowHydrostatic, TankOf40) {
-  expect_rest(settle<2, float>({.deep = 40, .wide = 40, .smoothing_ratio = 1.5}), 0.01, 1e-6);
-}
+// 0.95 and 0.84 %, mostly because at 1.3 spacings the lattice buckles.
+TEST(SlowHydrostatic, TankOf40) { expect_rest(settle<2, float>({.deep = 40, .wide = 40}), 0.01, 1e-6); }
 
+// As in bench/study/hydrostatic.cpp: at 1.3 spacings one 40 deep and 20 wide keeps 1.03e-6 of its energy in motion, one
+// 80 deep 1.2e-6, and in 3-D the pressure is 1.17 % off.
 TEST(SlowHydrostatic, TankOf80) {
   expect_rest(settle<2, float>({.deep = 80, .wide = 20, .smoothing_ratio = 1.5}), 0.01, 1e-6);
 }
