@@ -1,6 +1,8 @@
 // Meshes of boundaries that cannot be what was meant are refused with what is wrong.
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "core/error.h"
 #include "io/geometry/assemble.h"
 #include "io/scene/scene_file.h"
@@ -49,6 +51,19 @@ TEST(PlacedMesh, OneFarOffItsSizeIsRefused) {
 
 TEST(PlacedMesh, OneFarSmallerThanParticlesIsRefused) {
   EXPECT_NE(complaint_of(tetrahedron, "height = 1e-20").find("far below the spacing"), std::string::npos);
+}
+
+TEST(PlacedMesh, AnObstacleFacesOutwards) {
+  std::string inverted;  // each face walked the other way round
+  std::istringstream lines(tetrahedron);
+  for (std::string line; std::getline(lines, line);) {
+    if (line[0] == 'f') std::swap(line[4], line[6]);
+    inverted += line + '\n';
+  }
+  EXPECT_NE(complaint_of(inverted, "").find("inside out"), std::string::npos);
+  EXPECT_NE(complaint_of(flipped_tetrahedron, "").find("opposite ways"), std::string::npos);
+  EXPECT_EQ(complaint_of(inverted, "two_sided = true"), "");
+  EXPECT_EQ(complaint_of(flipped_tetrahedron, "two_sided = true"), "");
 }
 
 TEST(PlacedMesh, ABodyIsClosed) {

@@ -63,7 +63,7 @@ TriangleMesh placed_mesh(const Scene& scene, const MeshFile& file, const std::fu
   return mesh;
 }
 
-TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, bool must_close) {
+TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, Demand demand) {
   if (shape.terrain) return triangulate(read_terrain(*shape.terrain, locate(scene, shape.terrain->path)));
   if (shape.text) {
     TriangleMesh letters = extrude_text(scene, shape);
@@ -75,7 +75,8 @@ TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, boo
   if (!shape.mesh) return tessellate(shape, facet_edge * spacing);
   const auto file = locate(scene, shape.mesh->path);
   TriangleMesh mesh = read_mesh(file);
-  if (must_close) require_closed(mesh, file.string());
+  if (demand == Demand::closed) require_closed(mesh, file.string());
+  if (demand == Demand::outward) require_outward(mesh, file.string());
   place(mesh, *shape.mesh);
   return mesh;
 }
@@ -91,7 +92,7 @@ Region region_of(const Scene& scene, const Body& body, double edge_spacing) {
   if (scene.dimensions == 2)
     region.outline = outline(body.shape, facet_edge * edge_spacing);
   else
-    region.mesh = surface(scene, body.shape, edge_spacing, true);
+    region.mesh = surface(scene, body.shape, edge_spacing, Demand::closed);
   return region;
 }
 
@@ -246,7 +247,10 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
       }
       wall.plane_normal.normalize();
     } else if constexpr (Dim == 3) {
-      TriangleMesh mesh = surface(scene, boundary.shape, spacing, boundary.inside || boundary.body);
+      const Demand demand = boundary.inside || boundary.body ? Demand::closed
+                            : boundary.two_sided             ? Demand::none
+                                                             : Demand::outward;
+      TriangleMesh mesh = surface(scene, boundary.shape, spacing, demand);
       if (boundary.inside) flip(mesh);
       wall.vertices = std::move(mesh.vertices);
       wall.facets = std::move(mesh.triangles);

@@ -14,8 +14,11 @@
 
 namespace molten {
 
-/// The surface of any 3-D shape but a plane, placed; `must_close`: a mesh from a file must be closed.
-TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, bool must_close);
+/// What a mesh from a file must be: anything; facing outwards, so that it holds from outside; or closed, too.
+enum class Demand { none, outward, closed };
+
+/// The surface of any 3-D shape but a plane, placed.
+TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, Demand demand);
 
 /// A mesh from a file, turned, scaled and placed as the scene asks; open or closed. `waiting` as for read_mesh.
 TriangleMesh placed_mesh(const Scene& scene, const MeshFile& file, const std::function<void()>& waiting = {});

@@ -24,6 +24,9 @@ struct MeshReport {
 };
 MeshReport inspect(const TriangleMesh& mesh);
 
+/// Throws Error(geometry) if neighbouring triangles face opposite ways, or all of a closed mesh's face inwards.
+void require_outward(const TriangleMesh& mesh, const std::string& name);
+
 /// Throws Error(geometry) unless the mesh is closed, consistently oriented and not inverted; `name` goes in the line.
 void require_closed(const TriangleMesh& mesh, const std::string& name);
 

@@ -48,6 +48,19 @@ MeshReport inspect(const TriangleMesh& mesh) {
   return report;
 }
 
+void require_outward(const TriangleMesh& mesh, const std::string& name) {
+  const MeshReport report = inspect(mesh);
+  if (report.flipped_edges > 0)
+    throw Error(ExitCode::geometry,
+                name + ": neighbouring triangles face opposite ways: " + std::to_string(report.flipped_edges) +
+                    " edges" + first_at(report.first_defect) +
+                    ": orient them alike (in Blender: Mesh, Normals, Recalculate Outside)");
+  if (report.open_edges == 0 && report.volume < 0)
+    throw Error(ExitCode::geometry, name +
+                                        ": the surface is inside out: flip its normals (in Blender: Mesh, Normals, "
+                                        "Recalculate Outside)");
+}
+
 void require_closed(const TriangleMesh& mesh, const std::string& name) {
   if (mesh.empty()) throw Error(ExitCode::geometry, name + ": the mesh has no triangles");
   const MeshReport report = inspect(mesh);
@@ -55,16 +68,9 @@ void require_closed(const TriangleMesh& mesh, const std::string& name) {
     throw Error(ExitCode::geometry, name + ": the surface is not closed: " + std::to_string(report.open_edges) +
                                         " open edges" + first_at(report.first_defect) +
                                         ": close the holes (in Blender: Mesh, Clean Up, Fill Holes)");
-  if (report.flipped_edges > 0)
-    throw Error(ExitCode::geometry,
-                name + ": neighbouring triangles face opposite ways: " + std::to_string(report.flipped_edges) +
-                    " edges" + first_at(report.first_defect) +
-                    ": orient them alike (in Blender: Mesh, Normals, Recalculate Outside)");
+  require_outward(mesh, name);
   if (!(report.volume > 0))
-    throw Error(ExitCode::geometry,
-                name + (report.volume < 0 ? ": the surface is inside out: flip its normals (in "
-                                            "Blender: Mesh, Normals, Recalculate Outside)"
-                                          : ": the surface encloses no volume: give it a thickness"));
+    throw Error(ExitCode::geometry, name + ": the surface encloses no volume: give it a thickness");
 }
 
 }  // namespace molten
