@@ -239,6 +239,18 @@ TEST_F(Commands, CompareTellsRunsApart) {
   EXPECT_FALSE(contains(differ.out, "velocity       largest 0,")) << differ.out;
 }
 
+TEST_F(Commands, OneProcessAtATimeRunsInAFolder) {
+  Program program({"run", scene().string(), "-o", out.string(), "--set", "run.end_time=1000.0"});
+  ASSERT_TRUE(program.waits_for([&] { return fs::exists(out / "frames/000001.hdf"); }));
+  for (const auto& more :
+       {std::vector<std::string>{"resume", out.string()}, {"run", scene().string(), "-o", out.string(), "--overwrite"}})
+    expect_refused(molten_program(more), 5, {out.string(), "another process runs in this folder"});
+  EXPECT_TRUE(fs::exists(out / "frames/000001.hdf")) << "the run was spoiled";
+  program.kill(SIGKILL);
+  program.wait();
+  EXPECT_EQ(molten_program({"resume", out.string(), "--set", "run.end_time=0.0001"}).code, 0) << "the lock outlived it";
+}
+
 TEST_F(Commands, ASecondSignalEndsAtOnce) {
   // The stop asked for by the first signal is seen after a step; a stopped process takes both before it.
   Program program({"run", scene().string(), "-o", out.string(), "--set", "run.end_time=1000.0"});

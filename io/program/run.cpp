@@ -18,6 +18,7 @@
 #include "io/hdf5/frames.h"
 #include "io/program/progress.h"
 #include "io/program/report.h"
+#include "io/program/run_lock.h"
 #include "io/program/series.h"
 #include "io/program/signals.h"
 #include "io/scene/scene_file.h"
@@ -156,16 +157,18 @@ template <int Dim, class Real> class Runner {
     if (d.max_compression > much_compression && !said_compression_) say_compression(d.max_compression);
   }
 
-  /// Once a run: liquids whose density is far from theirs are not what was asked for. Gases may be.
+  /// Once a run: liquids whose density is far from theirs are not what was asked for. Gases may be, and sums over
+  /// neighbours, which lack some at a surface.
   void say_compression(double compression) {
     const EquationOfState& eos = state_.parameters.eos;
-    if (eos.kind == StateEquation::ideal_gas) return;
+    if (eos.kind == StateEquation::ideal_gas || state_.features.density_sum) return;
     if (progress_) progress_->finish();
     fmt::print(
         stderr,
-        "note: at t = {:.4g} s the density is up to {:.0f} % off: raise numerics.sound_speed above {:.3g} m/s, or "
+        "note: at t = {:.4g} s the density is up to {:.0f} % off: {}raise numerics.sound_speed above {:.3g} m/s, or "
         "give the fluid more room\n",
-        state_.clock.time, 100 * compression, eos.sound_speed);
+        state_.clock.time, 100 * compression, scene_.numerics.fixed_dt ? "lower numerics.fixed_dt, " : "",
+        eos.sound_speed);
     said_compression_ = true;
   }
 
@@ -272,20 +275,29 @@ template <class F> ExitCode dispatch(const Scene& scene, F&& f) {
   return single ? f.template operator()<3, float>() : f.template operator()<3, double>();
 }
 
-void make_folder(const std::filesystem::path& folder, bool overwrite) {
-  namespace fs = std::filesystem;
+bool holds_run(const std::filesystem::path& folder) {
   std::error_code error;
-  const bool holds_run = fs::exists(folder / "manifest.json", error) || fs::exists(folder / "checkpoints", error);
-  if (holds_run && !overwrite)
+  return std::filesystem::exists(folder / "manifest.json", error) ||
+         std::filesystem::exists(folder / "checkpoints", error);
+}
+
+void make_folder(const std::filesystem::path& folder, bool overwrite) {
+  if (holds_run(folder) && !overwrite)
     throw Error(ExitCode::files, folder.string() + ": already holds a run; go on with `molten resume " +
                                      folder.string() +
                                      "`, choose another folder with -o, or replace it with --overwrite");
-  if (holds_run)
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Error(ExitCode::files, folder.string() + ": cannot create the output folder: " + error.message());
+}
+
+/// Takes away what an earlier run left.
+void clear_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (holds_run(folder))
     for (const char* name : {"frames", "checkpoints", "frames.hdf.series", "series.csv", "summary.json",
                              "manifest.json", "scene.toml", "walls.obj", "bodies", "pictures"})
-      fs::remove_all(folder / name, error);
-  fs::create_directories(folder, error);
-  if (error) throw Error(ExitCode::files, folder.string() + ": cannot create the output folder: " + error.message());
+      std::filesystem::remove_all(folder / name, error);
   std::ofstream probe(folder / "scene.toml");
   if (!probe)
     throw Error(ExitCode::files, folder.string() + ": the output folder is not writable; choose another with -o");
@@ -317,6 +329,8 @@ ExitCode run_scene(const Scene& scene, const RunOptions& options) {
   return dispatch(scene, [&]<int Dim, class Real>() {
     auto runner = prepare_run<Dim, Real>(scene, options.folder, features, start, print);
     make_folder(options.folder, options.overwrite);
+    const RunLock lock(options.folder);
+    clear_folder(options.folder);
     write_text(options.folder / "scene.toml", scene.text);
     write_obj(options.folder / "walls.obj", picture_of_walls(scene, start));
     write_bodies(options.folder / "bodies", pictures_of_bodies(scene, start));
@@ -355,6 +369,7 @@ Usable newest_usable(const std::filesystem::path& folder) {
 }  // namespace
 
 ExitCode resume_run(const ResumeOptions& options) {
+  const RunLock lock(options.folder);
   const Usable checkpoint = newest_usable(options.folder);
   const std::filesystem::path copy = options.folder / "scene.toml";
   std::ifstream in(copy, std::ios::binary);
