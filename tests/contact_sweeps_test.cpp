@@ -227,6 +227,22 @@ TEST(ContactSearch, GridAndTreeGiveTheSameContacts) {
   }
 }
 
+/// A way of no length has no direction to look along; steps of bodies and particles at rest have such.
+TEST(ContactSearch, RestingIsNoWay) {
+  const Wall<3> box = contact_test::box(1, true);
+  const Contact<3> grid({box}, radius, 5 * radius, SearchMethod::grid),
+      tree({box}, radius, 5 * radius, SearchMethod::tree);
+  Random<3> random(5);
+  for (int i = 0; i < 1000; ++i) {
+    const Point<3> x = 1.1 * random.point();
+    for (const double speed : {0.0, 1e-320, 1e-200}) {
+      Motion<3> a{x, random.unit(), speed * random.unit()}, b = a;
+      ASSERT_EQ(grid.move(a, 1), tree.move(b, 1));
+      ASSERT_TRUE(a.position == b.position && a.velocity == b.velocity && a.rate == b.rate) << x.transpose();
+    }
+  }
+}
+
 TEST(ContactSearch, GridAndTreeGiveTheSameContactsIn2d) {
   Random<2> random(7);
   std::vector<Point<2>> corner;

@@ -118,7 +118,8 @@ void FacetTree<Dim>::sweep(const Point<Dim>& x, const Point<Dim>& d, OnPath visi
   double first, last;
   if (!part_in_box<Dim>(-impl_->half, impl_->half, from, d, first, last)) return;
   const double length = d.norm();
-  const Point<Dim> start = from + first * d, way = d / length;
+  // Of a sphere that rests, what it touches is the same along any direction.
+  const Point<Dim> start = from + first * d, way = length > 0 ? Point<Dim>(d / length) : Point<Dim>::UnitX();
   PathContext context;
   rtcInitIntersectContext(&context);
   context.visit = visit;
