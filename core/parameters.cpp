@@ -109,6 +109,18 @@ template <int Dim> Domain<Dim> domain_of(const Scene& scene, const Extent& exten
   return domain;
 }
 
+/// A particle meets each neighbour once, not also from behind.
+void require_wide_periods(const Scene& scene, double support_radius) {
+  for (int d = 0; d < scene.dimensions; ++d) {
+    if (!scene.periodic[d] || !scene.domain) continue;
+    const double period = scene.domain->max[d] - scene.domain->min[d];
+    if (period >= 2 * support_radius) continue;
+    refuse(scene, "scene.domain",
+           "is periodic and only " + std::to_string(period) + " m long there, but must be twice the support of " +
+               std::to_string(support_radius) + " m at least; enlarge it or lower fluid.spacing");
+  }
+}
+
 /// The temperatures that a scene starts with, keeps at its walls and lets in.
 struct Temperatures {
   double low = 1e300, high = -1e300;
@@ -188,6 +200,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.smoothing_length = n.smoothing_ratio * start.spacing;
   p.support_radius = kernel_reach(n.kernel) * p.smoothing_length;
   p.skin = n.skin * start.spacing;
+  require_wide_periods(scene, p.support_radius);
   // Walls with support hold particles by their pressure, further off than this; contact is for what goes too fast.
   p.contact_radius = n.wall_support ? start.spacing / 4 : start.spacing / 2;
   if (n.boundary_particles && !scene.boundaries.empty()) {

@@ -85,7 +85,7 @@ void add_render(CLI::App& app, Commands& c) {
   render->add_option("--look-at", p.look_at, "Where it looks: x y z, m")->delimiter(',');
   render->add_option("--azimuth", p.azimuth, "Direction of view about the vertical, degrees")->capture_default_str();
   render->add_option("--elevation", p.elevation, "Height of view, degrees")->capture_default_str();
-  render->add_option("--zoom", p.zoom, "Larger is closer")->capture_default_str()->check(CLI::PositiveNumber);
+  render->add_option("--zoom", p.zoom, "Larger is closer")->capture_default_str()->check(CLI::Range(0.001, 1000.0));
   render->add_option("--width", p.width, "Pixels")->capture_default_str()->check(CLI::Range(16, 8192));
   render->add_option("--height", p.height, "Pixels")->capture_default_str()->check(CLI::Range(16, 8192));
   render->add_flag("!--no-walls", p.boundaries, "Leave the walls out");

@@ -71,5 +71,74 @@ TEST_F(CheckTest, RefusesAnOutflowThatTakesAllFluid) {
   expect_bad(outflow("[1, 0]") + vent, 3, {"outflow.0: a vent lets fluid in beyond its plane"});
 }
 
+TEST_F(CheckTest, RefusesAVentOutsideTheDomain) {
+  const std::string vent = "[[vent]]\ndisc = { centre = [3, 1], normal = [0, 1], radius = 0.05 }\nrate = 0.01\n[run]";
+  const std::string domain = "[scene]\ndomain = { min = [-1, -1], max = [2, 2] }\n";
+  expect_bad(replaced(replaced(block_scene, "[run]", vent), "[scene]\n", domain), 3,
+             {"vent: reaches x = 2.96 m, outside scene.domain, which is from -1 to 2 m there"});
+}
+
+TEST_F(CheckTest, RefusesPeriodsInWhichAParticleMeetsItself) {
+  const std::string domain = "[scene]\nperiodic = [\"x\"]\ndomain = { min = [0, -1], max = [0.12, 2] }\n";
+  expect_bad(replaced(block_scene, "[scene]\n", domain), 2, {"scene.domain", "twice the support"});
+}
+
+/// The finding of a check, and what a run says of it; empty if there is none.
+class WarningTest : public ProgramTest {
+ protected:
+  std::string warning(const std::string& text) const {
+    const Outcome o = molten_program({"check", scene(text).string()});
+    EXPECT_EQ(o.code, 0) << o.err;
+    const std::size_t at = o.out.find("warning  ");
+    if (at == std::string::npos) return "";
+    EXPECT_TRUE(contains(o.out, "it can be run, but see the ")) << o.out;
+    return o.out.substr(at, o.out.find('\n', at) - at);
+  }
+  static std::string above_a_sheet(const std::string& keys) {
+    return "[fluid]\nbox = { min = [0.3, 0.3, 0.3], max = [0.6, 0.6, 0.6] }\nspacing = 0.1\n[[boundary]]\n"
+           "mesh = \"sheet.obj\"\n" +
+           keys + "\n[run]\nend_time = 0.001\n";
+  }
+};
+
+TEST_F(WarningTest, FluidAboveABackThatLetsItThrough) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  file("sheet.obj", corners + "f 1 3 2\nf 1 4 3\n");
+  const std::string said = warning(above_a_sheet(""));
+  EXPECT_TRUE(contains(said, "boundary.0: 100 % of the fluid is above its back")) << said;
+  EXPECT_TRUE(contains(said, "two_sided = true")) << said;
+  const Outcome o = run(above_a_sheet(""));
+  EXPECT_EQ(o.code, 0);
+  EXPECT_TRUE(contains(o.err, "note: boundary.0: 100 % of the fluid")) << o.err;
+  const auto check = [&](const std::string& text) { return molten_program({"check", scene(text).string()}).out; };
+  EXPECT_FALSE(contains(check(above_a_sheet("two_sided = true")), "its back"));
+  file("sheet.obj", corners + "f 1 2 3\nf 1 3 4\n");
+  EXPECT_FALSE(contains(check(above_a_sheet("")), "its back"));
+  EXPECT_EQ(warning(block_scene), "");
+}
+
+TEST_F(WarningTest, BodiesThatCanSinkIntoWalls) {
+  const auto ball = [](double density, double end) {
+    return fmt::format(
+        "[fluid]\nbox = {{ min = [0, 0], max = [1, 1] }}\nspacing = 0.1\n[scene]\ndimensions = 2\n[[boundary]]\n"
+        "plane = {{ point = [0, 0], normal = [0, 1] }}\n[[boundary]]\nsphere = {{ center = [2, 1], radius = 0.5 }}\n"
+        "body = {{ density = {} }}\n[run]\nend_time = {}\n[output]\nframes_per_second = 0\n",
+        density, end);
+  };
+  EXPECT_TRUE(contains(warning(ball(3000, 1)), "boundary.1.body: is denser than the fluid and can sink into a wall"));
+  EXPECT_EQ(warning(ball(3000, 0.1)), "");
+  EXPECT_EQ(warning(ball(500, 1)), "");
+}
+
+TEST_F(WarningTest, VentsNarrowerThanAParticle) {
+  const std::string vent = "[[vent]]\ndisc = { centre = [0.1, 0.9], normal = [0, -1], radius = 1e-4 }\nrate = 1e-5\n";
+  EXPECT_TRUE(contains(warning(block_scene + vent), "vent.0: is 0.0002 m wide and its stream one particle"));
+}
+
+TEST_F(WarningTest, StepsTooLong) {
+  EXPECT_TRUE(contains(warning(block_scene + "[numerics]\nfixed_dt = 0.001\n"), "numerics.fixed_dt: steps of 0.001 s"));
+  EXPECT_TRUE(contains(warning(block_scene + "[numerics]\ncourant = { sound = 2 }\n"), "numerics.courant: steps of"));
+}
+
 }  // namespace
 }  // namespace molten

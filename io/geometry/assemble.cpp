@@ -76,6 +76,8 @@ TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, Dem
   const auto file = locate(scene, shape.mesh->path);
   TriangleMesh mesh = read_mesh(file);
   if (demand == Demand::closed) require_closed(mesh, file.string());
+  if (demand == Demand::vessel)
+    require_closed(mesh, file.string(), ", or, for an open vessel, give two_sided = true instead of inside = true");
   if (demand == Demand::outward) require_outward(mesh, file.string());
   place(mesh, *shape.mesh);
   return mesh;
@@ -247,9 +249,10 @@ template <int Dim> std::vector<Wall<Dim>> build_walls(const Scene& scene, double
       }
       wall.plane_normal.normalize();
     } else if constexpr (Dim == 3) {
-      const Demand demand = boundary.inside || boundary.body ? Demand::closed
-                            : boundary.two_sided             ? Demand::none
-                                                             : Demand::outward;
+      const Demand demand = boundary.inside      ? Demand::vessel
+                            : boundary.body      ? Demand::closed
+                            : boundary.two_sided ? Demand::none
+                                                 : Demand::outward;
       TriangleMesh mesh = surface(scene, boundary.shape, spacing, demand);
       if (boundary.inside) flip(mesh);
       wall.vertices = std::move(mesh.vertices);

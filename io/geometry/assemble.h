@@ -14,8 +14,9 @@
 
 namespace molten {
 
-/// What a mesh from a file must be: anything; facing outwards, so that it holds from outside; or closed, too.
-enum class Demand { none, outward, closed };
+/// What a mesh from a file must be: anything; facing outwards, so that it holds from outside; closed, too; or that as a
+/// vessel, which could as well be open and hold from both sides.
+enum class Demand { none, outward, closed, vessel };
 
 /// The surface of any 3-D shape but a plane, placed.
 TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, Demand demand);

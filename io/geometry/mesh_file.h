@@ -27,7 +27,8 @@ MeshReport inspect(const TriangleMesh& mesh);
 /// Throws Error(geometry) if neighbouring triangles face opposite ways, or all of a closed mesh's face inwards.
 void require_outward(const TriangleMesh& mesh, const std::string& name);
 
-/// Throws Error(geometry) unless the mesh is closed, consistently oriented and not inverted; `name` goes in the line.
-void require_closed(const TriangleMesh& mesh, const std::string& name);
+/// Throws Error(geometry) unless the mesh is closed, consistently oriented and not inverted; `name` goes in the line,
+/// and so does `otherwise`, what else than closing it helps.
+void require_closed(const TriangleMesh& mesh, const std::string& name, const std::string& otherwise = "");
 
 }  // namespace molten

@@ -61,13 +61,13 @@ void require_outward(const TriangleMesh& mesh, const std::string& name) {
                                         "Recalculate Outside)");
 }
 
-void require_closed(const TriangleMesh& mesh, const std::string& name) {
+void require_closed(const TriangleMesh& mesh, const std::string& name, const std::string& otherwise) {
   if (mesh.empty()) throw Error(ExitCode::geometry, name + ": the mesh has no triangles");
   const MeshReport report = inspect(mesh);
   if (report.open_edges > 0)
     throw Error(ExitCode::geometry, name + ": the surface is not closed: " + std::to_string(report.open_edges) +
                                         " open edges" + first_at(report.first_defect) +
-                                        ": close the holes (in Blender: Mesh, Clean Up, Fill Holes)");
+                                        ": close the holes (in Blender: Mesh, Clean Up, Fill Holes)" + otherwise);
   require_outward(mesh, name);
   if (!(report.volume > 0))
     throw Error(ExitCode::geometry, name + ": the surface encloses no volume: give it a thickness");

@@ -115,6 +115,21 @@ void require_no_support(const Scene& scene, const Vent& vent, const VentPatch<Di
                               name_of(scene, vent), support));
 }
 
+/// What leaves the domain is taken out.
+template <int Dim>
+void require_in_domain(const Scene& scene, const Vent& vent, const VentPatch<Dim>& patch, const Domain<Dim>& domain) {
+  for (const Point<Dim>& offset : patch.offsets)
+    for (int d = 0; d < Dim; ++d) {
+      const double x = patch.centre[d] + offset[d];
+      if (x >= domain.lower[d] && x <= domain.upper[d]) continue;
+      throw Error(
+          ExitCode::geometry,
+          fmt::format("{}: reaches {} = {:.6g} m, outside scene.domain, which is from {:.6g} to {:.6g} m there; "
+                      "move the vent or enlarge the domain",
+                      name_of(scene, vent), "xyz"[d], x, domain.lower[d], domain.upper[d]));
+    }
+}
+
 /// Two vents that let fluid in at one place would put particles on particles.
 template <int Dim> void require_apart(const Scene& scene, const Vents<Dim>& vents, double spacing) {
   const auto overlap = [&](const VentPatch<Dim>& a, const VentPatch<Dim>& b) {
@@ -161,10 +176,12 @@ void require_open_vents(const Scene& scene, const Start& start, const std::vecto
                         const Contact<Dim>& contact) {
   const Vents<Dim> vents = build_vents<Dim>(scene, start, start.spacing);
   require_apart(scene, vents, start.spacing);
+  const Parameters<Dim> parameters = parameters_of<Dim>(scene, start);
   for (std::size_t k = 0; k < vents.count(); ++k) {
     const VentPatch<Dim>& patch = vents.patch(k);
     if (scene.numerics.wall_support)
-      require_no_support(scene, scene.vents[k], patch, contact, parameters_of<Dim>(scene, start).support_radius);
+      require_no_support(scene, scene.vents[k], patch, contact, parameters.support_radius);
+    if (scene.domain) require_in_domain(scene, scene.vents[k], patch, parameters.domain);
     Start outside;  // where a layer is when it has left
     outside.spacing = start.spacing;
     for (const Point<Dim>& offset : patch.offsets) {

@@ -11,6 +11,7 @@
 #include "io/geometry/mesh_defects.h"
 #include "io/geometry/mesh_file.h"
 #include "io/geometry/vents.h"
+#include "io/geometry/warnings.h"
 #include "io/program/commands.h"
 #include "io/program/progress.h"
 #include "io/scene/scene_file.h"
@@ -19,8 +20,8 @@ namespace molten {
 
 namespace {
 
-/// Places are those in the scene.
-void print_mesh(const Scene& scene, const MeshFile& file, Stages& stages) {
+/// Places are those in the scene. How many defects there are.
+std::size_t print_mesh(const Scene& scene, const MeshFile& file, Stages& stages) {
   stages.begin("reading " + file.path);
   const TriangleMesh mesh = placed_mesh(scene, file, [&] { stages.tick(); });
   stages.begin("looking for defects of " + file.path);
@@ -33,15 +34,17 @@ void print_mesh(const Scene& scene, const MeshFile& file, Stages& stages) {
   for (const Defect& d : defects)
     fmt::print("                  {} at ({:.6g}, {:.6g}, {:.6g}) m: {}\n", d.what, d.place[0], d.place[1], d.place[2],
                d.cure);
+  return defects.size();
 }
 
+/// Whether there is one.
 template <int Dim>
-void print_leak(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
+bool print_leak(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
                 const Contact<Dim>& contact, Stages& stages) {
   stages.begin("looking for leaks");
   const auto leak = find_leak<Dim>(scene, start, walls, contact);
   stages.finish();
-  if (!leak) return;
+  if (!leak) return false;
   const auto text = [](const Point<Dim>& x) {
     return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x[0], x[1], Dim == 3 ? x[Dim - 1] : 0.0);
   };
@@ -49,6 +52,7 @@ void print_leak(const Scene& scene, const Start& start, const std::vector<Wall<D
       "leak              fluid can get out of the walls at {}, the way is narrowest near {}: close the hole, or "
       "give an [[outflow]] if it is meant\n",
       text(leak->exit), text(leak->narrowest));
+  return true;
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -57,8 +61,36 @@ std::string joined(const std::vector<std::string>& words) {
   return all;
 }
 
+std::size_t print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& w : warnings) fmt::print("warning           {}\n", w);
+  return warnings.size();
+}
+
+/// By the default Courant numbers, which the state has from then on.
+template <int Dim, class Real> double advised_time_step(State<Dim, Real>& s) {
+  const Numerics standard;
+  s.parameters.courant_sound = standard.courant_sound, s.parameters.courant_force = standard.courant_force;
+  s.parameters.courant_viscous = standard.courant_viscous;
+  s.parameters.courant_conduction = standard.courant_conduction;
+  s.parameters.fixed_dt.reset();
+  choose_time_step(s);
+  return s.clock.dt;
+}
+
+/// Steps longer than the default Courant numbers would choose.
+template <int Dim, class Real> std::vector<std::string> step_warnings(State<Dim, Real>& s, const Numerics& numerics) {
+  constexpr double most = 2;
+  const double chosen = s.clock.dt, advised = advised_time_step(s);
+  if (!(chosen > most * advised)) return {};
+  return {
+      fmt::format("numerics.{}: steps of {:.3g} s are {:.3g} times those of the default Courant numbers, by the {} "
+                  "limit; the run may blow up",
+                  numerics.fixed_dt ? "fixed_dt" : "courant", chosen, chosen / advised, name_of(s.clock.limit))};
+}
+
+/// How many warnings there are.
 template <int Dim, class Real>
-void print_run(const Scene& scene, const Features& features, const Start& start, Stages& stages) {
+std::size_t print_run(const Scene& scene, const Features& features, const Start& start, Stages& stages) {
   const Parameters<Dim> p = parameters_of<Dim>(scene, start);
   stages.begin("building the walls");
   const std::vector<Wall<Dim>> walls = build_walls<Dim>(scene, start.spacing);
@@ -66,7 +98,11 @@ void print_run(const Scene& scene, const Features& features, const Start& start,
   stages.begin("looking for particles inside walls");
   require_no_overlap(scene, start, walls, around.contact);
   require_open_vents(scene, start, walls, around.contact);
-  print_leak(scene, start, walls, around.contact, stages);
+  std::size_t warnings = print_leak(scene, start, walls, around.contact, stages);
+  stages.begin("looking for what is seldom meant");
+  const std::vector<std::string> seldom_meant = warnings_of(scene, start, walls);
+  stages.finish();
+  warnings += print_warnings(seldom_meant);
   stages.begin("timing some steps");
   State<Dim, Real> s = make_state<Dim, Real>(features, p, std::move(around), start);
   // A few steps tell the time step, its limit and the speed of this machine.
@@ -97,6 +133,7 @@ void print_run(const Scene& scene, const Features& features, const Start& start,
   fmt::print("frames            {:.0f}, about {:.3g} MB in all\n",
              scene.run.end_time * scene.output.frames_per_second + 1,
              (scene.run.end_time * scene.output.frames_per_second + 1) * frame / 1e6);
+  return warnings + print_warnings(step_warnings(s, scene.numerics));
 }
 
 }  // namespace
@@ -105,12 +142,13 @@ ExitCode check_scene(const Scene& scene) {
   const Features features = features_of(scene);
   require_fields(features, scene.output.fields);
   Stages stages;
+  std::size_t found = 0;
   for (const Body& body : scene.fluid.bodies)
-    if (body.shape.mesh) print_mesh(scene, *body.shape.mesh, stages);
+    if (body.shape.mesh) found += print_mesh(scene, *body.shape.mesh, stages);
   for (const Boundary& boundary : scene.boundaries)
-    if (boundary.shape.mesh) print_mesh(scene, *boundary.shape.mesh, stages);
+    if (boundary.shape.mesh) found += print_mesh(scene, *boundary.shape.mesh, stages);
   for (const Vent& vent : scene.vents)
-    if (vent.mesh) print_mesh(scene, *vent.mesh, stages);
+    if (vent.mesh) found += print_mesh(scene, *vent.mesh, stages);
   stages.begin("filling the bodies");
   const Start start = fill_bodies(scene, features);
   stages.finish();
@@ -119,10 +157,15 @@ ExitCode check_scene(const Scene& scene) {
   fmt::print("passes a step     {}\n", joined(features.passes()));
   const bool single = scene.numerics.precision == Precision::single;
   if (scene.dimensions == 2)
-    single ? print_run<2, float>(scene, features, start, stages) : print_run<2, double>(scene, features, start, stages);
+    found += single ? print_run<2, float>(scene, features, start, stages)
+                    : print_run<2, double>(scene, features, start, stages);
   else
-    single ? print_run<3, float>(scene, features, start, stages) : print_run<3, double>(scene, features, start, stages);
-  fmt::print("no errors found\n");
+    found += single ? print_run<3, float>(scene, features, start, stages)
+                    : print_run<3, double>(scene, features, start, stages);
+  if (found == 0)
+    fmt::print("no errors found\n");
+  else
+    fmt::print("it can be run, but see the {} above\n", found == 1 ? "finding" : fmt::format("{} findings", found));
   return ExitCode::done;
 }
 

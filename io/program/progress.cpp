@@ -17,7 +17,9 @@ double since(std::chrono::steady_clock::time_point t) {
 }  // namespace
 
 std::string in_words(double seconds) {
-  const auto s = static_cast<long long>(std::ceil(std::max(0.0, std::min(seconds, 1e9))));
+  constexpr double year = 31557600;
+  if (!(seconds < 2 * year)) return seconds < 1e6 * year ? fmt::format("{:.0f} years", seconds / year) : "an age";
+  const auto s = static_cast<long long>(std::ceil(std::max(0.0, seconds)));
   if (s >= 3600) return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
   if (s >= 60) return fmt::format("{} min {:02} s", s / 60, s % 60);
   return fmt::format("{} s", s);

@@ -14,6 +14,7 @@
 #include "io/geometry/bodies.h"
 #include "io/geometry/obj_file.h"
 #include "io/geometry/vents.h"
+#include "io/geometry/warnings.h"
 #include "io/hdf5/checkpoint.h"
 #include "io/hdf5/frames.h"
 #include "io/program/progress.h"
@@ -167,9 +168,15 @@ template <int Dim, class Real> class Runner {
         stderr,
         "note: at t = {:.4g} s the density is up to {:.0f} % off: {}raise numerics.sound_speed above {:.3g} m/s, or "
         "give the fluid more room\n",
-        state_.clock.time, 100 * compression, scene_.numerics.fixed_dt ? "lower numerics.fixed_dt, " : "",
-        eos.sound_speed);
+        state_.clock.time, 100 * compression, step_cure(), eos.sound_speed);
     said_compression_ = true;
+  }
+
+  /// What makes steps shorter that the scene has made longer.
+  const char* step_cure() const {
+    const Numerics& n = scene_.numerics;
+    if (n.fixed_dt) return "lower numerics.fixed_dt, ";
+    return n.courant_sound > Numerics{}.courant_sound ? "lower numerics.courant.sound, " : "";
   }
 
   void write_snapshot() {
@@ -265,6 +272,7 @@ Runner<Dim, Real> prepare_run(const Scene& scene, const std::filesystem::path& f
   Surroundings<Dim> around = build_surroundings(scene, start, parameters, walls);
   require_no_overlap(scene, start, walls, around.contact);
   require_open_vents(scene, start, walls, around.contact);
+  for (const std::string& w : warnings_of(scene, start, walls)) fmt::print(stderr, "note: {}\n", w);
   return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(around), start), print);
 }
 
@@ -393,6 +401,10 @@ ExitCode resume_run(const ResumeOptions& options) {
     fmt::print(stderr, "resuming {} from t = {:.6g} s, step {}\n", options.folder.string(), checkpoint.head.time,
                checkpoint.head.step);
     catch_stop_signals();
+    if (checkpoint.head.time >= scene.run.end_time)
+      fmt::print(stderr,
+                 "note: that is past run.end_time = {:.6g} s; to go on: molten resume {} --set run.end_time=...\n",
+                 scene.run.end_time, options.folder.string());
     return runner.run();
   });
 }

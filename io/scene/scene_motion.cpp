@@ -49,6 +49,8 @@ Movement read_movement(const TomlReader& boundary_keys, int dimensions) {
   std::array<double, 3> centre{};
   if (keys.numbers("centre", components(centre, dimensions), Range::any("m"))) motion.centre = centre;
   read_key_frames(keys, dimensions, motion);
+  if (!keys.has("velocity") && !keys.has("spin") && !keys.has("key_frames"))
+    boundary_keys.fail("motion", "says nothing of how it moves; give velocity, spin or key_frames, or leave it out");
   return motion;
 }
 

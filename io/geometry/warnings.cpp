@@ -1,0 +1,185 @@
+#include "io/geometry/warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/boundary/sweep.h"
+
+namespace molten {
+namespace {
+
+template <int Dim> using Corners = std::array<Point<Dim>, Dim>;
+
+template <int Dim> std::string text(const Point<Dim>& x) {
+  return Dim == 3 ? fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x[0], x[1], x[Dim - 1])
+                  : fmt::format("({:.6g}, {:.6g}) m", x[0], x[1]);
+}
+
+// ---- what something that falls meets ------------------------------------------------------------------------------
+
+/// Where something that falls first meets a wall.
+struct Landing {
+  double t = HUGE_VAL;  // fraction of the way
+  std::size_t wall = 0;
+  bool behind = false;
+};
+
+/// Moves points straight along `way` (m) onto walls, from either side.
+template <int Dim> class Drop {
+ public:
+  enum class Onto { all, fixed };
+  Drop(const std::vector<Wall<Dim>>& walls, Onto onto, const Point<Dim>& way, double radius)
+      : way_(way), radius_(radius) {
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+      if (onto == Onto::fixed && walls[k].body >= 0) continue;
+      if (walls[k].is_plane) planes_.push_back({walls[k].plane_point, walls[k].plane_normal, k});
+      for (const auto& f : walls[k].facets) add(walls[k], f, k);
+    }
+  }
+
+  const Point<Dim>& way() const { return way_; }
+
+  Landing from(const Point<Dim>& x) const {
+    Landing first;
+    const auto meet = [&](const auto& hit, std::size_t wall, bool behind) {
+      if (hit && hit->t < first.t) first = {hit->t, wall, behind};
+    };
+    for (const auto& p : planes_) meet(sweep_plane(p.point, p.normal, x, way_, radius_), p.wall, false);
+    for (const auto& f : facets_) meet(sweep_facet(f.facet, x, way_, radius_), f.wall, f.behind);
+    return first;
+  }
+
+ private:
+  struct Part {
+    Facet<Dim> facet;
+    std::size_t wall;
+    bool behind;
+  };
+  struct Plane {
+    Point<Dim> point, normal;
+    std::size_t wall;
+  };
+
+  /// The side that is met.
+  void add(const Wall<Dim>& wall, const std::array<std::int32_t, Dim>& corners, std::size_t index) {
+    Corners<Dim> c;
+    for (int k = 0; k < Dim; ++k) c[k] = wall.vertices[corners[k]];
+    Facet<Dim> facet = make_facet<Dim>(c);
+    const bool behind = facet.normal.dot(way_) > 0;
+    if (behind) {
+      std::swap(c[0], c[1]);
+      facet = make_facet<Dim>(c);
+    }
+    facets_.push_back({facet, index, behind && !wall.two_sided});
+  }
+
+  Point<Dim> way_;  // m
+  double radius_;   // m
+  std::vector<Part> facets_;
+  std::vector<Plane> planes_;
+};
+
+// ---- fluid above the back of a wall -------------------------------------------------------------------------------
+
+/// Every n-th of the particles, and the vents.
+template <int Dim> std::vector<Point<Dim>> samples_of(const Start& start, std::size_t most) {
+  std::vector<Point<Dim>> samples;
+  const std::size_t stride = std::max<std::size_t>(1, (start.position.size() + most - 1) / most);
+  const auto add = [&](const std::array<double, 3>& x) { samples.push_back(Point<Dim>(x.data())); };
+  for (std::size_t k = 0; k < start.position.size(); k += stride) add(start.position[k]);
+  for (const auto& x : start.vents) add(x);
+  return samples;
+}
+
+/// Longer than from anything to any wall.
+template <int Dim>
+double reach_of(const std::vector<Wall<Dim>>& walls, const std::vector<Point<Dim>>& samples, double spacing) {
+  double furthest = spacing;
+  for (const auto& x : samples) furthest = std::max(furthest, x.norm());
+  for (const auto& wall : walls) {
+    if (wall.is_plane) furthest = std::max(furthest, wall.plane_point.norm());
+    for (const auto& v : wall.vertices) furthest = std::max(furthest, v.norm());
+  }
+  return 4 * furthest;
+}
+
+template <int Dim>
+void find_backs(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
+                std::vector<std::string>& found) {
+  const Point<Dim> gravity(scene.gravity.data());
+  const auto surface = [](const Wall<Dim>& wall) { return !wall.facets.empty() && !wall.two_sided; };
+  if (!(gravity.norm() > 0) || std::none_of(walls.begin(), walls.end(), surface)) return;
+  std::size_t facets = 1;
+  for (const auto& wall : walls) facets += wall.facets.size();
+  constexpr std::size_t most_tests = 20000000, most_samples = 1000;
+  const auto samples = samples_of<Dim>(start, std::clamp<std::size_t>(most_tests / facets, 8, most_samples));
+  const Point<Dim> way = reach_of(walls, samples, start.spacing) * gravity.normalized();
+  const Drop<Dim> drop(walls, Drop<Dim>::Onto::all, way, start.spacing / 100);
+  std::vector<std::size_t> behind(walls.size());
+  std::vector<Point<Dim>> place(walls.size());
+  for (const Point<Dim>& x : samples) {
+    const Landing landing = drop.from(x);
+    if (!landing.behind) continue;
+    if (behind[landing.wall]++ == 0) place[landing.wall] = x + landing.t * drop.way();
+  }
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    if (behind[k] > 0)
+      found.push_back(fmt::format(
+          "boundary.{}: {:.0f} % of the fluid is above its back, which lets fluid through, first at {}: turn the "
+          "surface over, close its holes, or give two_sided = true",
+          k, 100.0 * static_cast<double>(behind[k]) / static_cast<double>(samples.size()), text<Dim>(place[k])));
+}
+
+// ---- the rest -----------------------------------------------------------------------------------------------------
+
+/// How far it falls in a run, m.
+template <int Dim> Point<Dim> fall_of(const Scene& scene, const FreeBody& body) {
+  const double t = scene.run.end_time;
+  return t * Point<Dim>(body.velocity.data()) + t * t / 2 * Point<Dim>(scene.gravity.data());
+}
+
+/// Free bodies meet the fluid alone.
+template <int Dim>
+void find_sinking(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
+                  std::vector<std::string>& found) {
+  const Point<Dim> gravity(scene.gravity.data());
+  const auto higher = [&](const Point<Dim>& a, const Point<Dim>& b) { return gravity.dot(a) < gravity.dot(b); };
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const auto& body = scene.boundaries[k].body;
+    if (!body || !(body->density > scene.fluid.density)) continue;
+    const Drop<Dim> drop(walls, Drop<Dim>::Onto::fixed, fall_of<Dim>(scene, *body), start.spacing / 100);
+    const auto& v = walls[k].vertices;
+    if (drop.from(*std::max_element(v.begin(), v.end(), higher)).t < 1)
+      found.push_back(
+          fmt::format("boundary.{}.body: is denser than the fluid and can sink into a wall before run.end_time: bodies "
+                      "pass through walls and each other; end the run earlier, or give motion instead of body",
+                      k));
+  }
+}
+
+void find_narrow_vents(const Scene& scene, const Start& start, std::vector<std::string>& found) {
+  for (std::size_t k = 0; k < scene.vents.size(); ++k)
+    if (!scene.vents[k].mesh && 2 * scene.vents[k].radius < start.spacing)
+      found.push_back(
+          fmt::format("vent.{}: is {:.3g} m wide and its stream one particle, {:.3g} m; take a smaller spacing", k,
+                      2 * scene.vents[k].radius, start.spacing));
+}
+
+}  // namespace
+
+template <int Dim>
+std::vector<std::string> warnings_of(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls) {
+  std::vector<std::string> found;
+  find_backs(scene, start, walls, found);
+  find_sinking(scene, start, walls, found);
+  find_narrow_vents(scene, start, found);
+  return found;
+}
+
+template std::vector<std::string> warnings_of(const Scene&, const Start&, const std::vector<Wall<2>>&);
+template std::vector<std::string> warnings_of(const Scene&, const Start&, const std::vector<Wall<3>>&);
+
+}  // namespace molten
