@@ -11,6 +11,7 @@
 #include "core/inside.h"
 #include "io/geometry/assemble.h"
 #include "io/geometry/mesh_file.h"
+#include "io/geometry/point_text.h"
 #include "io/geometry/terrain.h"
 #include "io/scene/scene_file.h"
 
@@ -144,11 +145,10 @@ void require_no_overlap(const Scene& scene, const Start& start, const std::vecto
   Place3 first{};
   const std::size_t inside = count_inside_walls(scene, start, walls, contact, &first);
   if (inside > 0)
-    throw Error(
-        ExitCode::geometry,
-        fmt::format("{}: {} of {} particles start inside a wall, the first at ({:.6g}, {:.6g}, {:.6g}) m; "
-                    "move the fluid at least half a spacing ({:.3g} m) away from the walls",
-                    scene.file, inside, start.position.size(), first[0], first[1], first[2], start.spacing / 2));
+    throw Error(ExitCode::geometry, fmt::format("{}: {} of {} particles start inside a wall, the first at {}; "
+                                                "move the fluid at least half a spacing ({:.3g} m) away from the walls",
+                                                scene.file, inside, start.position.size(),
+                                                in_metres<Dim>(Point<Dim>(first.data())), start.spacing / 2));
 }
 
 #define MOLTEN_INSTANTIATE(Dim)                                                                      \

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "io/geometry/assemble.h"
+#include "io/geometry/point_text.h"
 
 namespace molten {
 
@@ -190,12 +191,10 @@ void require_open_vents(const Scene& scene, const Start& start, const std::vecto
       for (int d = 0; d < Dim; ++d) at[d] = x[d];
     }
     if (const std::size_t n = count_inside_walls(scene, outside, walls, contact); n > 0)
-      throw Error(
-          ExitCode::geometry,
-          fmt::format("{}: {} of the {} particles that leave it at ({:.6g}, {:.6g}, {:.6g}) m would be inside a "
-                      "wall; move it to the wall's surface, turn its normal into the open, or make it smaller",
-                      name_of(scene, scene.vents[k]), n, patch.offsets.size(), patch.centre[0], patch.centre[1],
-                      Dim == 3 ? patch.centre[Dim - 1] : 0.0));
+      throw Error(ExitCode::geometry,
+                  fmt::format("{}: {} of the {} particles that leave it at {} would be inside a "
+                              "wall; move it to the wall's surface, turn its normal into the open, or make it smaller",
+                              name_of(scene, scene.vents[k]), n, patch.offsets.size(), in_metres<Dim>(patch.centre)));
   }
 }
 

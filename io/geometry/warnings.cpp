@@ -7,16 +7,12 @@
 #include <cmath>
 
 #include "core/boundary/sweep.h"
+#include "io/geometry/point_text.h"
 
 namespace molten {
 namespace {
 
 template <int Dim> using Corners = std::array<Point<Dim>, Dim>;
-
-template <int Dim> std::string text(const Point<Dim>& x) {
-  return Dim == 3 ? fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x[0], x[1], x[Dim - 1])
-                  : fmt::format("({:.6g}, {:.6g}) m", x[0], x[1]);
-}
 
 // ---- what something that falls meets ------------------------------------------------------------------------------
 
@@ -130,7 +126,7 @@ void find_backs(const Scene& scene, const Start& start, const std::vector<Wall<D
       found.push_back(fmt::format(
           "boundary.{}: {:.0f} % of the fluid is above its back, which lets fluid through, first at {}: turn the "
           "surface over, close its holes, or give two_sided = true",
-          k, 100.0 * static_cast<double>(behind[k]) / static_cast<double>(samples.size()), text<Dim>(place[k])));
+          k, 100.0 * static_cast<double>(behind[k]) / static_cast<double>(samples.size()), in_metres<Dim>(place[k])));
 }
 
 // ---- the rest -----------------------------------------------------------------------------------------------------

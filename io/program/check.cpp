@@ -10,6 +10,7 @@
 #include "io/geometry/leak.h"
 #include "io/geometry/mesh_defects.h"
 #include "io/geometry/mesh_file.h"
+#include "io/geometry/point_text.h"
 #include "io/geometry/vents.h"
 #include "io/geometry/warnings.h"
 #include "io/program/commands.h"
@@ -31,9 +32,7 @@ std::size_t print_mesh(const Scene& scene, const MeshFile& file, Stages& stages)
   fmt::print(
       "mesh              {}: {} vertices, {} triangles, {} open edges, {} flipped edges, {} degenerate triangles\n",
       file.path, mesh.vertices.size(), mesh.triangles.size(), r.open_edges, r.flipped_edges, r.degenerate_triangles);
-  for (const Defect& d : defects)
-    fmt::print("                  {} at ({:.6g}, {:.6g}, {:.6g}) m: {}\n", d.what, d.place[0], d.place[1], d.place[2],
-               d.cure);
+  for (const Defect& d : defects) fmt::print("                  {} at {}: {}\n", d.what, in_metres<3>(d.place), d.cure);
   return defects.size();
 }
 
@@ -45,13 +44,10 @@ bool print_leak(const Scene& scene, const Start& start, const std::vector<Wall<D
   const auto leak = find_leak<Dim>(scene, start, walls, contact);
   stages.finish();
   if (!leak) return false;
-  const auto text = [](const Point<Dim>& x) {
-    return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x[0], x[1], Dim == 3 ? x[Dim - 1] : 0.0);
-  };
   fmt::print(
       "leak              fluid can get out of the walls at {}, the way is narrowest near {}: close the hole, or "
       "give an [[outflow]] if it is meant\n",
-      text(leak->exit), text(leak->narrowest));
+      in_metres<Dim>(leak->exit), in_metres<Dim>(leak->narrowest));
   return true;
 }
 
