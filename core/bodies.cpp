@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/body_walls.h"
+
 namespace molten {
 
 namespace {
@@ -58,6 +60,7 @@ void Bodies<Dim>::begin_step(Contact<Dim>& contact, double time, double dt, cons
     if (bodies_[k].inertia) {
       for (int d = 0; d < Dim; ++d) m.velocity[d] += dt * gravity[d];
       m.spin = spin_of(k);
+      hold(contact, k, Eigen::Map<const Point<Dim>>(gravity.data()).norm());
     } else {
       const RigidBody<Dim>& b = bodies_[k];
       const Pose<Dim> end = b.prescribed.at(b.centre, time + dt);
@@ -68,6 +71,13 @@ void Bodies<Dim>::begin_step(Contact<Dim>& contact, double time, double dt, cons
     contact.set_motion(k, m);
   }
   way_ += fastest() * dt;
+}
+
+/// By walls, in the step that has begun.
+template <int Dim> void Bodies<Dim>::hold(const Contact<Dim>& contact, std::size_t k, double gravity) {
+  corners_.resize(count());
+  if (corners_[k].empty()) corners_[k] = corners_of(contact, k);
+  hold_at_walls<Dim>(contact, {bodies_[k], corners_[k], motion_[k], angular_momentum_[k]}, dt_, gravity);
 }
 
 template <int Dim> void Bodies<Dim>::receive(std::span<const Kick<Dim>> sets) {

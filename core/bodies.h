@@ -1,7 +1,7 @@
 // Walls that move: bodies on a prescribed way, and free rigid bodies that gravity and the particles drive. The
 // particles feel a body through contact (core/boundary/contact.h) and, with support, through its integrals
 // (core/boundary/wall_terms.h); a free body receives the opposite of each impulse at the place of the contact, or of
-// the particle, so linear and angular momentum stay to round-off.
+// the particle, so linear and angular momentum stay to round-off. Walls that stay in place hold it (body_walls.h).
 #pragma once
 
 #include <optional>
@@ -72,12 +72,14 @@ template <int Dim> class Bodies {
 
  private:
   Spin<Dim> spin_of(std::size_t k) const;
+  void hold(const Contact<Dim>& contact, std::size_t k, double gravity);
 
   std::vector<RigidBody<Dim>> bodies_;
   std::vector<RigidMotion<Dim>> motion_;  // at the present time; during a step, of the step
   std::vector<Spin<Dim>> angular_momentum_;
-  std::vector<Kick<Dim>> given_;        // a second, about the centre
-  double time_ = 0, dt_ = 0, way_ = 0;  // s, s, m
+  std::vector<std::vector<Point<Dim>>> corners_;  // m; of free bodies, in their own frames, from the first step on
+  std::vector<Kick<Dim>> given_;                  // a second, about the centre
+  double time_ = 0, dt_ = 0, way_ = 0;            // s, s, m
 };
 
 }  // namespace molten

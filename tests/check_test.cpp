@@ -117,19 +117,6 @@ TEST_F(WarningTest, FluidAboveABackThatLetsItThrough) {
   EXPECT_EQ(warning(block_scene), "");
 }
 
-TEST_F(WarningTest, BodiesThatCanSinkIntoWalls) {
-  const auto ball = [](double density, double end) {
-    return fmt::format(
-        "[fluid]\nbox = {{ min = [0, 0], max = [1, 1] }}\nspacing = 0.1\n[scene]\ndimensions = 2\n[[boundary]]\n"
-        "plane = {{ point = [0, 0], normal = [0, 1] }}\n[[boundary]]\nsphere = {{ center = [2, 1], radius = 0.5 }}\n"
-        "body = {{ density = {} }}\n[run]\nend_time = {}\n[output]\nframes_per_second = 0\n",
-        density, end);
-  };
-  EXPECT_TRUE(contains(warning(ball(3000, 1)), "boundary.1.body: is denser than the fluid and can sink into a wall"));
-  EXPECT_EQ(warning(ball(3000, 0.1)), "");
-  EXPECT_EQ(warning(ball(500, 1)), "");
-}
-
 TEST_F(WarningTest, VentsNarrowerThanAParticle) {
   const std::string vent = "[[vent]]\ndisc = { centre = [0.1, 0.9], normal = [0, -1], radius = 1e-4 }\nrate = 1e-5\n";
   EXPECT_TRUE(contains(warning(block_scene + vent), "vent.0: is 0.0002 m wide and its stream one particle"));

@@ -296,6 +296,22 @@ bool Contact<Dim>::may_touch_body(std::size_t body, const Pose<Dim>& pose, const
   return group.search->any_within(pose.to_body(x), reach);
 }
 
+template <int Dim>
+void Contact<Dim>::visit_fixed_walls(const Point<Dim>& x, double limit,
+                                     const std::function<void(const OverFace<Dim>&)>& f) const {
+  impl_->fixed.search->visit_faces(x, limit, [&](std::int32_t wall, const Point<Dim>& normal, double height) {
+    const Wall<Dim>& w = impl_->fixed.walls[static_cast<std::size_t>(wall)];
+    if (height < 0 && w.two_sided) return;  // its other side is there, too
+    f({normal, height, &w});
+  });
+}
+
+template <int Dim> bool Contact<Dim>::may_touch_fixed(const Point<Dim>& x, double reach) const {
+  return impl_->fixed.search->any_within(x, reach);
+}
+
+template <int Dim> double Contact<Dim>::skin() const { return impl_->skin; }
+
 template <int Dim> double Contact<Dim>::signed_distance(const Point<Dim>& x, double limit) const {
   const auto near = impl_->nearest_any(x, limit);
   if (near.rank < 0) return limit;

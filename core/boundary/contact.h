@@ -23,6 +23,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -83,6 +84,13 @@ template <int Dim> struct Kick {
   Spin<Dim> angular = Spin<Dim>::Zero();   // m²/s; about the body's centre at the end of the step
 };
 
+/// A point over the face of a wall.
+template <int Dim> struct OverFace {
+  Point<Dim> normal;  // unit, of the wall's front
+  double gap;         // m; negative behind the wall
+  const Wall<Dim>* wall;
+};
+
 template <int Dim> class Contact {
  public:
   /// `radius` (m) of the particles; `cell` (m) of the grid that lists the facets, made larger where huge walls need it.
@@ -119,6 +127,13 @@ template <int Dim> class Contact {
 
   /// `may_touch` for the walls of one body when it is at `pose`.
   bool may_touch_body(std::size_t body, const Pose<Dim>& pose, const Point<Dim>& x, double reach) const;
+
+  /// Calls f for each wall that stays in place over whose face x is, up to `limit` (m) in front or behind.
+  void visit_fixed_walls(const Point<Dim>& x, double limit, const std::function<void(const OverFace<Dim>&)>& f) const;
+  /// False only if there is none for any point within `reach` (m) of x.
+  bool may_touch_fixed(const Point<Dim>& x, double reach) const;
+  /// The gap (m) that contacts leave.
+  double skin() const;
 
   /// Distance (m) from x to the nearest wall surface and the side: negative behind it. Brute force over what is near up
   /// to `limit`; returns `limit` if none is nearer. For tests, set-up checks and diagnostics.

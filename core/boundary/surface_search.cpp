@@ -199,6 +199,26 @@ template <int Dim> NearestWall<Dim> SurfaceSearch<Dim>::nearest_held(const Point
   return best;
 }
 
+template <int Dim> void SurfaceSearch<Dim>::visit_faces(const Point<Dim>& x, double limit, const OnFace& f) const {
+  for (const Plane& p : planes_) {
+    const double at = p.normal.dot(x - p.point);
+    if (std::abs(at) <= limit) f(p.wall, p.normal, at);
+  }
+  const auto face = [&](std::int32_t facet) {
+    const auto near = nearest_point(surface_.facets()[facet], x);
+    if (near.feature == Feature::face && near.distance <= limit)
+      f(surface_.wall(facet), surface_.facets()[facet].normal, height(facet, x));
+  };
+  if (tree_alone_)
+    tree().near(x, limit, [&](std::int32_t facet) {
+      face(facet);
+      return true;
+    });
+  else
+    grid_.visit_box(x - Point<Dim>::Constant(limit), x + Point<Dim>::Constant(limit),
+                    [&](std::span<const std::int32_t> facets) { std::for_each(facets.begin(), facets.end(), face); });
+}
+
 template <int Dim> NearestWall<Dim> SurfaceSearch<Dim>::nearest_any(const Point<Dim>& x, double limit) const {
   NearestWall<Dim> best;
   come_near_planes(best, x, limit);

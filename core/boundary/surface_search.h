@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -80,6 +81,10 @@ template <int Dim> class SurfaceSearch {
 
   /// The nearest wall within `limit` (m) of x.
   NearestWall<Dim> nearest_any(const Point<Dim>& x, double limit) const;
+
+  /// f(wall, normal, height) for each face that x is over, up to `limit` (m) in front or behind.
+  using OnFace = std::function<void(std::int32_t, const Point<Dim>&, double)>;
+  void visit_faces(const Point<Dim>& x, double limit, const OnFace& f) const;
 
  private:
   struct Plane {

@@ -26,11 +26,8 @@ struct Landing {
 /// Moves points straight along `way` (m) onto walls, from either side.
 template <int Dim> class Drop {
  public:
-  enum class Onto { all, fixed };
-  Drop(const std::vector<Wall<Dim>>& walls, Onto onto, const Point<Dim>& way, double radius)
-      : way_(way), radius_(radius) {
+  Drop(const std::vector<Wall<Dim>>& walls, const Point<Dim>& way, double radius) : way_(way), radius_(radius) {
     for (std::size_t k = 0; k < walls.size(); ++k) {
-      if (onto == Onto::fixed && walls[k].body >= 0) continue;
       if (walls[k].is_plane) planes_.push_back({walls[k].plane_point, walls[k].plane_normal, k});
       for (const auto& f : walls[k].facets) add(walls[k], f, k);
     }
@@ -113,7 +110,7 @@ void find_backs(const Scene& scene, const Start& start, const std::vector<Wall<D
   constexpr std::size_t most_tests = 20000000, most_samples = 1000;
   const auto samples = samples_of<Dim>(start, std::clamp<std::size_t>(most_tests / facets, 8, most_samples));
   const Point<Dim> way = reach_of(walls, samples, start.spacing) * gravity.normalized();
-  const Drop<Dim> drop(walls, Drop<Dim>::Onto::all, way, start.spacing / 100);
+  const Drop<Dim> drop(walls, way, start.spacing / 100);
   std::vector<std::size_t> behind(walls.size());
   std::vector<Point<Dim>> place(walls.size());
   for (const Point<Dim>& x : samples) {
@@ -131,31 +128,6 @@ void find_backs(const Scene& scene, const Start& start, const std::vector<Wall<D
 
 // ---- the rest -----------------------------------------------------------------------------------------------------
 
-/// How far it falls in a run, m.
-template <int Dim> Point<Dim> fall_of(const Scene& scene, const FreeBody& body) {
-  const double t = scene.run.end_time;
-  return t * Point<Dim>(body.velocity.data()) + t * t / 2 * Point<Dim>(scene.gravity.data());
-}
-
-/// Free bodies meet the fluid alone.
-template <int Dim>
-void find_sinking(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
-                  std::vector<std::string>& found) {
-  const Point<Dim> gravity(scene.gravity.data());
-  const auto higher = [&](const Point<Dim>& a, const Point<Dim>& b) { return gravity.dot(a) < gravity.dot(b); };
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    const auto& body = scene.boundaries[k].body;
-    if (!body || !(body->density > scene.fluid.density)) continue;
-    const Drop<Dim> drop(walls, Drop<Dim>::Onto::fixed, fall_of<Dim>(scene, *body), start.spacing / 100);
-    const auto& v = walls[k].vertices;
-    if (drop.from(*std::max_element(v.begin(), v.end(), higher)).t < 1)
-      found.push_back(
-          fmt::format("boundary.{}.body: is denser than the fluid and can sink into a wall before run.end_time: bodies "
-                      "pass through walls and each other; end the run earlier, or give motion instead of body",
-                      k));
-  }
-}
-
 void find_narrow_vents(const Scene& scene, const Start& start, std::vector<std::string>& found) {
   for (std::size_t k = 0; k < scene.vents.size(); ++k)
     if (!scene.vents[k].mesh && 2 * scene.vents[k].radius < start.spacing)
@@ -170,7 +142,6 @@ template <int Dim>
 std::vector<std::string> warnings_of(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls) {
   std::vector<std::string> found;
   find_backs(scene, start, walls, found);
-  find_sinking(scene, start, walls, found);
   find_narrow_vents(scene, start, found);
   return found;
 }
