@@ -59,17 +59,44 @@ TEST(MeshDefects, FlippedDuplicateAndFlatTriangles) {
   EXPECT_EQ(flat[0].place, mesh.vertices[mesh.triangles[50][0]]);
 }
 
-TEST(MeshDefects, BallsThatOverlapPassThroughEachOther) {
-  TriangleMesh mesh = ball({0, 0, 0}, 0.5);
-  const TriangleMesh other = ball({0.83, 0.01, 0.02}, 0.5);
+void add_to(TriangleMesh& mesh, const TriangleMesh& other) {
   const auto first = static_cast<std::int32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
   for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+/// The unit cube with its lowest corner there.
+TriangleMesh cube_at(const Vec3& lower) {
+  Shape shape;
+  shape.box = Box{{lower.x(), lower.y(), lower.z()}, {lower.x() + 1, lower.y() + 1, lower.z() + 1}};
+  return tessellate(shape, 10);
+}
+
+TEST(MeshDefects, BallsThatOverlapPassThroughEachOther) {
+  TriangleMesh mesh = ball({0, 0, 0}, 0.5);
+  const TriangleMesh other = ball({0.83, 0.01, 0.02}, 0.5);
+  add_to(mesh, other);
   const auto crossings = of_kind(find_defects(mesh, 1000), "passes through");
   ASSERT_GT(crossings.size(), 10u);
   for (const Defect& d : crossings) EXPECT_NEAR(d.place.x(), 0.415, 0.02) << "where the two surfaces meet";
   EXPECT_EQ(of_kind(find_defects(mesh, 3), "passes through").size(), 3u);
   EXPECT_NE(of_kind(find_defects(mesh, 3), "passes through")[2].what.find("more like it"), std::string::npos);
+}
+
+/// Two unit cubes whose edges go exactly through the diagonals of each other's faces.
+TEST(MeshDefects, AnEdgeThroughTheEdgeOfTwoTrianglesPassesThrough) {
+  TriangleMesh mesh = cube_at({0, 0, 0});
+  add_to(mesh, cube_at({0.5, 0.5, 0.5}));
+  EXPECT_FALSE(of_kind(find_defects(mesh), "passes through").empty());
+}
+
+TEST(MeshDefects, AnEdgeThatTouchesAnEdgeDoesNot) {
+  TriangleMesh mesh = cube_at({0, 0, 0});
+  TriangleMesh blade;
+  blade.vertices = {{0.5, 0.3, 1.5}, {1.5, 0.3, 0.5}, {2, 0.3, 2}};
+  blade.triangles = {{0, 1, 2}};
+  add_to(mesh, blade);
+  EXPECT_TRUE(of_kind(find_defects(mesh), "passes through").empty());
 }
 
 /// An open tray of 2 × 2 × 0.5 m from two-sided sheets; `hole`: the width (m) of a slot in its side.

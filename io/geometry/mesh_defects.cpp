@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <compare>
 #include <map>
+#include <optional>
 
 #include "core/boundary/facet_grid.h"
 #include "core/particle_pass.h"
@@ -129,37 +130,66 @@ std::vector<Defect> without_area(const std::vector<Facet<3>>& facets) {
   return defects;
 }
 
-/// Does the segment a b pass through the inside of the facet? Touching is none.
-bool pierces(const Facet<3>& f, const Vec3& a, const Vec3& b, Vec3& where) {
+/// Where a segment meets a facet.
+struct Hit {
+  enum class Part { inside, rim } part = Part::inside;
+  int from = 0;  // 1, −1: the segment comes from the front, from the back; 0: it touches the facet at most
+  Vec3 where = Vec3::Zero();
+};
+
+Hit meet(const Facet<3>& f, const Vec3& a, const Vec3& b) {
   const double size = std::max((f.corner[1] - f.corner[0]).norm(), (f.corner[2] - f.corner[0]).norm());
   const double above = f.normal.dot(a - f.corner[0]), below = f.normal.dot(b - f.corner[0]), least = 1e-9 * size;
-  if (!((above > least && below < -least) || (above < -least && below > least))) return false;
-  where = a + above / (above - below) * (b - a);
+  if (!((above > least && below < -least) || (above < -least && below > least))) return {};
+  Hit hit{Hit::Part::inside, above > 0 ? 1 : -1, a + above / (above - below) * (b - a)};
   for (int k = 0; k < 3; ++k) {
     const Vec3 e = f.corner[(k + 1) % 3] - f.corner[k];
-    if (f.normal.cross(e).dot(where - f.corner[k]) <= least * e.norm()) return false;
+    const double inwards = f.normal.cross(e).dot(hit.where - f.corner[k]);
+    if (inwards < -least * e.norm()) return {};
+    if (inwards <= least * e.norm()) hit.part = Hit::Part::rim;
   }
-  return true;
+  return hit;
 }
 
-/// Those of one facet; `near` is scratch.
-void add_crossings(std::vector<Defect>& defects, const std::vector<Facet<3>>& facets, std::size_t f,
+/// A hit on the edge or corner that some facets share goes through them if it comes from the same side of all.
+bool goes_through(const std::vector<Hit>& rims, const Hit& hit, double nearby) {
+  const auto there = [&](const Hit& h) { return (h.where - hit.where).norm() <= nearby; };
+  return std::count_if(rims.begin(), rims.end(), there) > 1 &&
+         std::none_of(rims.begin(), rims.end(), [&](const Hit& h) { return there(h) && h.from != hit.from; });
+}
+
+/// Does the segment a b pass through one of the facets, and where? Touching is none. The facet, or none.
+std::optional<std::int32_t> pierced(const std::vector<Facet<3>>& facets, std::span<const std::int32_t> near,
+                                    const Vec3& a, const Vec3& b, Vec3& where) {
+  std::vector<Hit> rims;
+  std::vector<std::int32_t> rim_of;
+  for (const std::int32_t f : near) {
+    const Hit hit = meet(facets[f], a, b);
+    if (hit.from == 0) continue;
+    if (hit.part == Hit::Part::inside) return where = hit.where, f;
+    rims.push_back(hit), rim_of.push_back(f);
+  }
+  for (std::size_t k = 0; k < rims.size(); ++k)
+    if (goes_through(rims, rims[k], 1e-9 * (b - a).norm())) return where = rims[k].where, rim_of[k];
+  return std::nullopt;
+}
+
+/// Those that the edges of one facet make; `near` is scratch.
+void add_crossings(std::vector<Defect>& defects, const std::vector<Facet<3>>& facets, std::size_t g,
                    const FacetGrid<3>& grid, std::vector<std::int32_t>& near) {
-  const auto& c = facets[f].corner;
+  const auto& c = facets[g].corner;
   near.clear();
   grid.visit_box(c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2]),
                  [&](std::span<const std::int32_t> list) { near.insert(near.end(), list.begin(), list.end()); });
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
+  std::erase(near, static_cast<std::int32_t>(g));
   Vec3 where;
-  for (const std::int32_t g : near) {
-    if (g == static_cast<std::int32_t>(f)) continue;
-    for (int k = 0; k < 3; ++k) {
-      if (!pierces(facets[f], facets[g].corner[k], facets[g].corner[(k + 1) % 3], where)) continue;
-      defects.push_back({fmt::format("triangle {} passes through triangle {}", g, f), where, untangle});
+  for (int k = 0; k < 3; ++k)
+    if (const auto f = pierced(facets, near, c[k], c[(k + 1) % 3], where)) {
+      defects.push_back({fmt::format("triangle {} passes through triangle {}", g, *f), where, untangle});
       break;
     }
-  }
 }
 
 std::vector<Defect> crossings(const TriangleMesh& mesh, const std::vector<Facet<3>>& facets) {
@@ -173,7 +203,7 @@ std::vector<Defect> crossings(const TriangleMesh& mesh, const std::vector<Facet<
   std::vector<std::vector<Defect>> found(pieces);
   for_each_piece_with(pieces, std::vector<std::int32_t>(), [&](std::size_t piece, std::vector<std::int32_t>& near) {
     const std::size_t end = std::min(facets.size(), (piece + 1) * facets_a_piece);
-    for (std::size_t f = piece * facets_a_piece; f < end; ++f) add_crossings(found[piece], facets, f, grid, near);
+    for (std::size_t g = piece * facets_a_piece; g < end; ++g) add_crossings(found[piece], facets, g, grid, near);
   });
   std::vector<Defect> defects;
   for (auto& some : found) defects.insert(defects.end(), some.begin(), some.end());
