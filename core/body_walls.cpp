@@ -20,7 +20,7 @@ MomentMatrix<3> turned(const MomentMatrix<3>& moment, const Turn<3>& turn) { ret
 /// What an impulse (kg m/s) at an arm (m) from the centre does.
 template <int Dim> class Pushed {
  public:
-  Pushed(const HeldBody<Dim>& held)
+  explicit Pushed(const HeldBody<Dim>& held)
       : held_(held),
         inverse_mass_(1 / held.body.inertia->mass),
         inverse_moment_(turned(held.body.inertia->moment, held.motion.start.turn).inverse()) {}
