@@ -9,6 +9,7 @@ import argparse
 import csv
 import math
 import os
+import statistics
 import subprocess
 import sys
 import time
@@ -24,15 +25,15 @@ KEPT = ["commit", "preset", "settings", "threads", "status"] + COLUMNS
 # by it, which takes no time and is tried again when the study goes on.
 PRESETS = ["molten", "basic", "internal", "dias", "paiva", "queiroz"]
 CHANGES = [["numerics." + key for key in keys.split()] for keys in [
-    "kernel=cubic_spline", "kernel=gaussian", "smoothing_ratio=1.3", "smoothing_ratio=1.7", "smoothing_ratio=2",
-    "precision=double",
+    "kernel=cubic_spline", "kernel=gaussian", "smoothing_ratio=1.3", "smoothing_ratio=1.5", "smoothing_ratio=1.6",
+    "smoothing_ratio=1.7", "smoothing_ratio=2", "precision=double",
     "integrator=symplectic_euler", "integrator=predictor_corrector", "integrator=runge_kutta_4",
-    "artificial_viscosity=0", "artificial_viscosity=0.02", "gradient_correction=true",
-    "gradient_correction=true artificial_viscosity=0", "density_diffusion=0.1",
-    "density_diffusion=0.1 artificial_viscosity=0.02", "density_diffusion=0.1 wall_support=true",
+    "artificial_viscosity=0", "artificial_viscosity=0.02", "gradient_correction=true", "gradient_correction=false",
+    "density_diffusion=0.1", "density_diffusion=0.1 wall_support=true", "density_diffusion=0.2 wall_support=true",
     'density_filter={kind="shepard"}', 'density_filter={kind="mls"}', "tensile_correction=true"]]
 COMMIT = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True,
                         text=True).stdout.strip() or "unknown"
+DEFAULT_SIZES = ([16, 32], 16)
 MARGINS = [2, 4, 8]  # times the time step
 
 # Sizes of the full study, and the one of the quick study (at most 50 particles a side, 20 s a case).
@@ -64,21 +65,24 @@ def known_cases():
 
 
 def plan(quick, cases):
-    """(case, size, preset, settings), the quick ones first."""
-    runs = []
-    for case in cases:
-        sizes, small = SIZES.get(case, ([16, 32], 16))
-        if quick:
-            preset = "dias" if case.startswith("dias-") else "molten"
-            runs.append((case, small, preset, QUICK_SETTINGS.get(case, [])))
-            continue
-        more = FULL_SETTINGS.get(case, [])
-        runs += [(case, size, preset, more) for preset in PRESETS for size in sizes]
-        small_ones = sizes[:1] if case == "kleefsman" else sizes[:3]
-        runs += [(case, size, "molten", more + change) for change in CHANGES for size in small_ones]
-        if case in MARGIN_CASES:
-            runs += [(case, sizes[1], preset, more + [f"step_factor={k}"]) for preset in PRESETS for k in MARGINS]
-    return runs
+    """(case, size, preset, settings): every case at its smallest size first, so that a study that is stopped has seen all."""
+    if quick:
+        return [(case, SIZES.get(case, DEFAULT_SIZES)[1], "dias" if case.startswith("dias-") else "molten",
+                 QUICK_SETTINGS.get(case, [])) for case in cases]
+    return [run for level in range(4) for case in cases for run in full_runs(case, level)]
+
+
+def full_runs(case, level):
+    """The runs of a case at its size number `level`; changes to "molten" at its two smallest."""
+    sizes, more = SIZES.get(case, DEFAULT_SIZES)[0], FULL_SETTINGS.get(case, [])
+    if level >= len(sizes):
+        return []
+    runs = [(preset, more) for preset in PRESETS]
+    if level < (1 if case == "kleefsman" else 2):
+        runs += [("molten", more + change) for change in CHANGES]
+    if level == 1 and case in MARGIN_CASES:
+        runs += [(preset, more + [f"step_factor={k}"]) for preset in PRESETS for k in MARGINS]
+    return [(case, sizes[level], preset, settings) for preset, settings in runs]
 
 
 def key_of(row):
@@ -131,14 +135,20 @@ def run_all(runs, file, limit):
     if others:
         say(f"{file} has results of commit {', '.join(sorted(others))}, which stay; -o names a folder for new ones")
     done = {key_of(row) for row in rows if not row["status"].startswith("refused")}
+    too_long = {key_of(row) for row in rows if row["status"] == "too long"}
     left = [r for r in runs if (r[0], r[1], r[2], " ".join(r[3])) not in done]
     if len(left) < len(runs):
         say(f"{len(runs) - len(left)} of {len(runs)} runs are there already, in {file}")
     for k, (case, size, preset, settings) in enumerate(left):
+        name = " ".join([case, str(size), preset] + settings)
+        if any((c, p, t) == (case, preset, " ".join(settings)) and n < size for c, n, p, t in too_long):
+            say(f"[{k + 1}/{len(left)}] {name}: left out, a smaller one took too long")
+            continue
         began = time.monotonic()
         rows = run_one(case, size, preset, settings, limit)
+        if rows[0]["status"] == "too long":
+            too_long.add((case, size, preset, " ".join(settings)))
         append_rows(file, KEPT, rows)
-        name = " ".join([case, str(size), preset] + settings)
         say(f"[{k + 1}/{len(left)}] {name}: {rows[0]['status']}, {time.monotonic() - began:.1f} s")
 
 
@@ -204,6 +214,29 @@ def cheapest_table(groups):
             cells.append(f"{enough[0]['time']:.3g} s: {label(enough[0])}, {enough[0]['size']}" if enough else "–")
         lines.append(f"| {case} | {quantity} | " + " | ".join(cells) + " |")
     return lines
+
+
+def change_table(groups):
+    """What a change to "molten" does to error and run time of the runs of the same size, over all that is judged."""
+    pairs = defaultdict(list)
+    for points in groups.values():
+        own = {p["size"]: p for p in points if p["preset"] == "molten" and "numerics." not in p["settings"]
+               and "step_factor" not in p["settings"]}
+        for p in points:
+            if p["preset"] == "molten" and "numerics." in p["settings"] and p["size"] in own:
+                change = " ".join(s for s in p["settings"].split() if s.startswith("numerics."))
+                pairs[change].append((p, own[p["size"]]))
+    lines = ["| change | judged | error less by 10 % | more by 10 % | of them failed | error, times | run time, times |",
+             "|---|---|---|---|---|---|---|"]
+    for change, both in pairs.items():
+        sound = [(p, own) for p, own in both if math.isfinite(p["err"]) and min(p["err"], own["err"], p["time"], own["time"]) > 0]
+        error = statistics.geometric_mean([p["err"] / own["err"] for p, own in sound]) if sound else math.nan
+        seconds = statistics.geometric_mean([p["time"] / own["time"] for p, own in sound]) if sound else math.nan
+        failed = sum(not math.isfinite(p["err"]) for p, _ in both)
+        better = sum(p["err"] < 0.9 * own["err"] for p, own in both)
+        worse = failed + sum(p["err"] > 1.1 * own["err"] for p, own in both if math.isfinite(p["err"]))
+        lines.append(f"| {change.replace('numerics.', '')} | {len(both)} | {better} | {worse} | {failed} | {error:.2f} | {seconds:.2f} |")
+    return lines if len(lines) > 2 else []
 
 
 def margin_table(groups):
@@ -329,6 +362,7 @@ def report(folder):
     sections = [("Least errors", smallest_table(groups), "Bold: within reach."),
                 ("Cheapest settings for an error", cheapest_table(groups), ""),
                 ("Peers", peer_lines(groups, peers), "Run times of peers are measured beside ours, where given."),
+                ("Changes to the default", change_table(groups), "Means are geometric, over what did not fail."),
                 ("How far the time step can be pushed", margin_table(groups), "")]
     text = "# Results of the study\n\nWritten by `scripts/study`.\n"
     for title, lines, note in sections:

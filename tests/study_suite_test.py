@@ -44,6 +44,15 @@ class Tables(unittest.TestCase):
                 row(10, 1, "nan", settings="step_factor=4", status="diverged")]
         self.assertEqual(s.margin_table(s.judged(rows))[-1], "| wave | period | molten | 1 % | 2 % | diverged |  |")
 
+    def test_changes_are_compared_with_the_default_of_the_same_size(self):
+        rows = [row(10, 1, 0.01), row(20, 4, 0.02)]
+        rows += [row(10, 2, 0.005, settings="end_time=1 numerics.kernel=gaussian"),
+                 row(20, 2, 0.02, settings="end_time=1 numerics.kernel=gaussian"),
+                 row(40, 2, 0.02, settings="end_time=1 numerics.kernel=gaussian"),
+                 row(20, 2, "nan", settings="numerics.kernel=spiky", status="diverged")]
+        self.assertEqual(s.change_table(s.judged(rows))[-2:], ["| kernel=gaussian | 2 | 1 | 0 | 0 | 0.71 | 1.00 |",
+                                                               "| kernel=spiky | 1 | 0 | 1 | 1 | nan | nan |"])
+
 
 class GoingOn(unittest.TestCase):
     def setUp(self):
@@ -83,6 +92,19 @@ echo wave,molten,2,9,$4,1,0.5,period,0.01,0.02
         kept = s.read_rows(file, s.KEPT)[0]
         self.assertEqual((kept["settings"], kept["error"], kept["size"]), ("a=1", "0.01", "10"))
         self.assertEqual(kept["commit"], s.COMMIT)
+
+    def test_what_took_too_long_is_not_tried_at_larger_sizes(self):
+        file = Path(self.folder.name) / "results.csv"
+        Path(s.PROGRAM).write_text(f"#!/bin/sh\necho $@ >> {self.log}\nexec sleep 5\n")
+        s.run_all([("wave", 10, "molten", ["a=1"]), ("wave", 20, "molten", ["a=1"]), ("wave", 20, "molten", [])], file, 0.1)
+        self.assertEqual(self.calls(), 2)
+        self.assertEqual([(r["size"], r["status"]) for r in s.read_rows(file)], [("10", "too long"), ("20", "too long")])
+
+    def test_a_full_study_sees_every_case_before_larger_sizes(self):
+        runs = s.plan(False, ["couette", "kleefsman"])
+        smallest = [k for k, r in enumerate(runs) if (r[0], r[1]) in {("couette", 10), ("kleefsman", 12000)}]
+        self.assertEqual(smallest, list(range(len(smallest))))
+        self.assertIn(("kleefsman", 400000, "dias", ["end_time=6"]), runs)
 
 
 if __name__ == "__main__":
