@@ -211,8 +211,8 @@ struct Xsph {
 };
 
 struct Shifting {
-  double strength = 10;  // C of δv = −C U h Σ V ∇W
-  double coupling = 1;   // κ of the rate κ U/h at which the density takes on that of the particles' places; 0: not
+  double strength = 6;  // C of δv = −C U h Σ V ∇W
+  double coupling = 1;  // κ of the rate κ U/h at which the density takes on that of the particles' places; 0: not
 };
 
 struct DensityFilter {

@@ -48,7 +48,7 @@ def taylor_green(scheme, size, folder):
 
 
 def cavity(scheme, size, folder):
-    seconds, r = solve("cavity", ["--scheme", scheme, "--nx", str(size), "--tf", "10"], folder)
+    seconds, r = solve("cavity", ["--scheme", scheme, "--nx", str(size), "--tf", "20"], folder)
     reference = columns("viscous/lid_cavity_Re100_computed_richardson.csv", "s", "u_at_x0.5", "v_at_y0.5")
     if reference is None:
         return seconds, {}

@@ -195,7 +195,7 @@ def smallest_table(groups):
     for (case, quantity), points in groups.items():
         sound = [p for p in points if math.isfinite(p["err"])]
         if not sound:
-            lines.append(f"| {case} | {quantity} | {percent(points[0]['goal'])} | – | every run diverged | | |")
+            lines.append(f"| {case} | {quantity} | {percent(points[0]['goal'])} | – | no run gave a number | | |")
             continue
         p = min(sound, key=lambda p: p["err"])
         met = "**" if p["err"] <= p["goal"] else ""

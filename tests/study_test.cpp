@@ -1,6 +1,7 @@
 // The study: its metrics against known answers, its exact solutions, and every case at a tiny size.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <utility>
@@ -191,6 +192,20 @@ TEST(StudyExact, CavityHasTheReferencesCentre) {
   EXPECT_NEAR(lines.u(0.5), -0.20912, 5e-4);
   EXPECT_NEAR(lines.v(0.5), 0.05753, 5e-4);
   EXPECT_EQ(lines.u(1), 1);
+}
+
+TEST(StudyExact, CavityOfAThousandIsReachedThroughSlowerOnes) {
+  const CentreLines lines = cavity_flow(1000, 32);
+  EXPECT_NEAR(*std::min_element(lines.u.value.begin(), lines.u.value.end()), -0.3886, 0.02);  // Botella & Peyret 1998
+}
+
+TEST(StudyProbes, ValueAtIsExactForQuadraticFields) {
+  for (const int dimensions : {2, 3}) {
+    const Cloud c = block_cloud(dimensions, {1, 1, 1}, 0.1);
+    const auto of = [](double x, double y) { return 1 + 2 * x - 3 * y * y + x * y; };
+    const auto field = [&](std::size_t k) { return of(c.position[k][0], c.position[k][1]); };
+    EXPECT_NEAR(value_at(c, dimensions, {0.43, 0.51, 0.5}, field), of(0.43, 0.51), 1e-10);
+  }
 }
 
 TEST(StudyProbes, ValueAtIsExactForLinearFields) {

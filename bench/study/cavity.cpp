@@ -21,6 +21,29 @@ plane = { point = [0, 1], normal = [0, -1] }
 velocity = [1, 0]
 )";
 
+/// Squared errors on the centre lines, over points and moments.
+class LineErrors {
+ public:
+  explicit LineErrors(double reynolds) : exact_(cavity_flow(reynolds, points)) {}
+
+  void add(const Cloud& c) {
+    for (int k = 1; k < points; ++k) {
+      const double at = static_cast<double>(k) / points;
+      const double u = value_at(c, 2, {0.5, at, 0}, [&](std::size_t i) { return c.velocity[i][0]; });
+      const double v = value_at(c, 2, {at, 0.5, 0}, [&](std::size_t i) { return c.velocity[i][1]; });
+      u2_ += std::pow(u - exact_.u(at), 2), v2_ += std::pow(v - exact_.v(at), 2);
+    }
+    count_ += points - 1;
+  }
+  double u() const { return std::sqrt(u2_ / count_); }
+  double v() const { return std::sqrt(v2_ / count_); }
+
+ private:
+  static constexpr int points = 100;
+  CentreLines exact_;
+  double u2_ = 0, v2_ = 0, count_ = 0;
+};
+
 void run(const Request& r, Report& report) {
   report.expect("u_rms", 0.004);
   report.expect("v_rms", 0.004);
@@ -30,30 +53,26 @@ void run(const Request& r, Report& report) {
             wall_support_text() + walls;
   s.start = lattice(2, {}, {1, 1, 0}, spacing);
   const auto simulation = Simulation::make(r, s, report);
-  simulation->run_until(r["end_time"]);
-
-  const Cloud c = simulation->cloud();
-  const CentreLines exact = cavity_flow(r["reynolds"], 64);
-  constexpr int points = 100;
-  double u2 = 0, v2 = 0;
-  for (int k = 1; k < points; ++k) {
-    const double at = static_cast<double>(k) / points;
-    u2 += std::pow(value_at(c, 2, {0.5, at, 0}, [&](std::size_t i) { return c.velocity[i][0]; }) - exact.u(at), 2);
-    v2 += std::pow(value_at(c, 2, {at, 0.5, 0}, [&](std::size_t i) { return c.velocity[i][1]; }) - exact.v(at), 2);
+  LineErrors errors(r["reynolds"]);
+  for (const double part : {0.8, 0.85, 0.9, 0.95, 1.0}) {  // one moment alone is good or bad by chance
+    simulation->run_until(part * r["end_time"]);
+    errors.add(simulation->cloud());
   }
-  report.judge("u_rms", std::sqrt(u2 / (points - 1)));
-  report.judge("v_rms", std::sqrt(v2 / (points - 1)));
+  report.judge("u_rms", errors.u());
+  report.judge("v_rms", errors.v());
 }
 
 }  // namespace
 
 Case cavity() {
   return {"cavity",
-          "lid-driven cavity; rms of the velocity on both centre lines over the lid's speed, at 99 points each",
+          "steady flow in a lid-driven cavity; rms of the velocity on both centre lines over the lid's speed, at 99 "
+          "points each "
+          "and five moments of the last fifth of the run",
           "particles a side",
           50,
           8,
-          {{"reynolds", 100, "Re"}, {"end_time", 10, "side over the lid's speed"}},
+          {{"reynolds", 100, "Re"}, {"end_time", 20, "side over the lid's speed; from 0.2 Re on the flow is steady"}},
           run};
 }
 

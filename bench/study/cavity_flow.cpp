@@ -1,7 +1,12 @@
 #include "bench/study/cavity_flow.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/SparseLU>
+#include <algorithm>
 #include <vector>
+
+#include "core/error.h"
 
 namespace molten::study {
 
@@ -10,20 +15,16 @@ namespace {
 /// ∇²ψ + ω = 0 and ∇²ω/Re = u ω_x + v ω_y with u = ψ_y, v = −ψ_x at the inner nodes of a grid.
 class Cavity {
  public:
-  Cavity(double reynolds, int cells)
-      : reynolds_(reynolds), cells_(cells), h_(1.0 / cells), inner_((cells - 1) * (cells - 1)), x_(2 * inner_) {
+  explicit Cavity(int cells) : cells_(cells), h_(1.0 / cells), inner_((cells - 1) * (cells - 1)), x_(2 * inner_) {
     x_.setZero();
   }
 
-  void solve() {
-    for (int round = 0; round < 30; ++round) {
-      Eigen::SparseMatrix<double> slopes(2 * inner_, 2 * inner_);
-      Eigen::VectorXd residual(2 * inner_);
-      linearise(slopes, residual);
-      Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(slopes);
-      const Eigen::VectorXd move = solver.solve(-residual);
-      x_ += move;
-      if (move.lpNorm<Eigen::Infinity>() < 1e-9) break;
+  /// From rest through flows of twice the Reynolds number each: Newton's method goes astray on longer ways.
+  void solve(double reynolds) {
+    for (double through = std::min(reynolds, 100.0);; through = std::min(2 * through, reynolds)) {
+      reynolds_ = through;
+      iterate();
+      if (through == reynolds) return;
     }
   }
 
@@ -37,6 +38,20 @@ class Cavity {
   }
 
  private:
+  void iterate() {
+    for (int round = 0; round < 30; ++round) {
+      Eigen::SparseMatrix<double> slopes(2 * inner_, 2 * inner_);
+      Eigen::VectorXd residual(2 * inner_);
+      linearise(slopes, residual);
+      Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(slopes);
+      const Eigen::VectorXd move = solver.solve(-residual);
+      x_ += move;
+      if (move.lpNorm<Eigen::Infinity>() < 1e-9) return;
+    }
+    throw Error(ExitCode::usage,
+                fmt::format("cavity: no steady flow found at Re = {:g}; take a smaller reynolds", reynolds_));
+  }
+
   using Entries = std::vector<Eigen::Triplet<double>>;
 
   bool is_inner(int i, int j) const { return i > 0 && j > 0 && i < cells_ && j < cells_; }
@@ -92,7 +107,7 @@ class Cavity {
     slopes.setFromTriplets(entries.begin(), entries.end());
   }
 
-  double reynolds_;
+  double reynolds_ = 0;
   int cells_;
   double h_;
   int inner_;
@@ -102,8 +117,8 @@ class Cavity {
 }  // namespace
 
 CentreLines cavity_flow(double reynolds, int cells) {
-  Cavity coarse(reynolds, cells), fine(reynolds, 2 * cells);
-  coarse.solve(), fine.solve();
+  Cavity coarse(cells), fine(2 * cells);
+  coarse.solve(reynolds), fine.solve(reynolds);
   CentreLines lines;
   for (int k = 0; k <= cells; ++k) {
     const double s = static_cast<double>(k) / cells;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace molten::study {
 
@@ -111,19 +112,54 @@ template <class F> void near(const Cloud& cloud, int dimensions, const Triple& p
 
 }  // namespace
 
+namespace {
+
+/// Weighted least squares of a value over powers of the offset from a point, over h.
+class Fit {
+ public:
+  explicit Fit(int terms) : moments_(Matrix::Zero(terms, terms)), sums_(Vector::Zero(terms)) {}
+
+  void add(double weight, const Eigen::VectorXd& powers, double value) {
+    moments_ += weight * powers * powers.transpose();
+    sums_ += weight * value * powers;
+  }
+  /// At the point itself; nothing where the points do not span the powers.
+  std::optional<double> value() const {
+    const Eigen::LDLT<Matrix> factors(moments_);
+    if (factors.vectorD().minCoeff() < 1e-6 * moments_(0, 0)) return std::nullopt;
+    return factors.solve(sums_)[0];
+  }
+
+ private:
+  using Matrix = Eigen::MatrixXd;
+  using Vector = Eigen::VectorXd;
+  Matrix moments_;
+  Vector sums_;
+};
+
+/// All products of at most `order` (0 to 2) of the coordinates.
+Eigen::VectorXd powers(const Triple& x, int dimensions, int order) {
+  Eigen::VectorXd all(10);
+  int n = 0;
+  all[n++] = 1;
+  for (int d = 0; order > 0 && d < dimensions; ++d) all[n++] = x[d];
+  for (int d = 0; order > 1 && d < dimensions; ++d)
+    for (int e = d; e < dimensions; ++e) all[n++] = x[d] * x[e];
+  return all.head(n);
+}
+
+}  // namespace
+
 double value_at(const Cloud& cloud, int dimensions, const Triple& point, const std::function<double(std::size_t)>& of) {
-  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d sums = Eigen::Vector4d::Zero();
-  near(cloud, dimensions, point, [&](std::size_t k, double weight, const Triple& offset) {
-    const double h = cloud.smoothing_length;
-    const Eigen::Vector4d base(1, offset[0] / h, offset[1] / h, offset[2] / h);
-    moments += weight * base * base.transpose();
-    sums += weight * of(k) * base;
-  });
-  if (moments(0, 0) == 0) return 0;
-  for (int d = dimensions; d < 3; ++d) moments(d + 1, d + 1) = 1;
-  const bool spanned = moments.determinant() > 1e-4 * std::pow(moments(0, 0), dimensions + 1);
-  return spanned ? moments.ldlt().solve(sums)[0] : sums[0] / moments(0, 0);
+  for (int order = 2; order >= 0; --order) {
+    Fit fit(static_cast<int>(powers({}, dimensions, order).size()));
+    near(cloud, dimensions, point, [&](std::size_t k, double weight, Triple offset) {
+      for (double& x : offset) x /= cloud.smoothing_length;
+      fit.add(weight, powers(offset, dimensions, order), of(k));
+    });
+    if (const auto value = fit.value()) return *value;
+  }
+  return 0;
 }
 
 double pressure_at(const Cloud& cloud, int dimensions, const Triple& point) {

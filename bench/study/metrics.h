@@ -46,8 +46,8 @@ class FieldError {
 /// three rows of a lattice would count where there is room for two.
 double depth_at(const Cloud& cloud, int dimensions, const Triple& place, const Triple& half);
 
-/// A quantity of the particles (by their place in the cloud) at a point: moving least squares of first order over a
-/// kernel's support; the weighted mean where particles do not span it, 0 where there are none.
+/// A quantity of the particles (by their place in the cloud) at a point: moving least squares of second order over a
+/// kernel's support, of a lower one where particles do not span it; 0 where there are none.
 double value_at(const Cloud& cloud, int dimensions, const Triple& point, const std::function<double(std::size_t)>& of);
 
 /// Pressure (Pa) at a point, by Shepard's mean over a kernel's support; 0 where there is hardly any fluid.
