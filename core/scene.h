@@ -211,7 +211,7 @@ struct Xsph {
 };
 
 struct Shifting {
-  double strength = 6;  // C of δv = −C U h Σ V ∇W
+  double strength = 7;  // C of δv = −C U h Σ V ∇W
   double coupling = 1;  // κ of the rate κ U/h at which the density takes on that of the particles' places; 0: not
 };
 

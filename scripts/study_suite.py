@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs many cases of the study, keeps their results, and reports run time against error.
 
-Called by scripts/study; the program that it runs is build/release/bench/study. Results are kept in FOLDER/results.csv, a
-line as soon as a run ends, so that a study that was stopped goes on where it stopped. FOLDER/report.md has the tables,
+Called by scripts/study; the program that it runs is build/release/bench/study. Results are kept in FOLDER/results.csv,
+a line as soon as a run ends, so that a study that was stopped goes on where it stopped. FOLDER/report.md has the tables,
 FOLDER/*.png the pictures (log error over log run time; python3-matplotlib, if it is there).
 """
 import argparse
@@ -64,17 +64,22 @@ def known_cases():
     return [line.split("|")[1].strip() for line in page.splitlines()[2:] if line.startswith("|")]
 
 
+def sizes_of(case):
+    return SIZES.get(case, DEFAULT_SIZES)[0]
+
+
 def plan(quick, cases):
-    """(case, size, preset, settings): every case at its smallest size first, so that a study that is stopped has seen all."""
+    """(case, size, preset, settings): the smallest size of every case first; a study that is stopped has seen them all."""
     if quick:
         return [(case, SIZES.get(case, DEFAULT_SIZES)[1], "dias" if case.startswith("dias-") else "molten",
                  QUICK_SETTINGS.get(case, [])) for case in cases]
-    return [run for level in range(4) for case in cases for run in full_runs(case, level)]
+    levels = max(len(sizes_of(case)) for case in cases)
+    return [run for level in range(levels) for case in cases for run in full_runs(case, level)]
 
 
 def full_runs(case, level):
     """The runs of a case at its size number `level`; changes to "molten" at its two smallest."""
-    sizes, more = SIZES.get(case, DEFAULT_SIZES)[0], FULL_SETTINGS.get(case, [])
+    sizes, more = sizes_of(case), FULL_SETTINGS.get(case, [])
     if level >= len(sizes):
         return []
     runs = [(preset, more) for preset in PRESETS]
@@ -115,7 +120,8 @@ def run_one(case, size, preset, settings, limit):
     command = [PROGRAM, "--case", case, "--size", str(size), "--numerics", preset]
     for setting in settings:
         command += ["--set", setting]
-    head = {"commit": COMMIT, "preset": preset, "settings": " ".join(settings), "threads": os.environ.get("OMP_NUM_THREADS", "all")}
+    head = {"commit": COMMIT, "preset": preset, "settings": " ".join(settings),
+            "threads": os.environ.get("OMP_NUM_THREADS", "all")}
     nothing = dict.fromkeys(COLUMNS, "") | {"case": case, "size": size} | head
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=limit)
@@ -135,19 +141,26 @@ def run_all(runs, file, limit):
     if others:
         say(f"{file} has results of commit {', '.join(sorted(others))}, which stay; -o names a folder for new ones")
     done = {key_of(row) for row in rows if not row["status"].startswith("refused")}
-    too_long = {key_of(row) for row in rows if row["status"] == "too long"}
+    too_long = {}  # case, preset and settings: the smallest size that took too long
+
+    def note(row):
+        if row["status"] == "too long":
+            of = row["case"], row["preset"], row["settings"]
+            too_long[of] = min(int(row["size"]), too_long.get(of, math.inf))
+
+    for row in rows:
+        note(row)
     left = [r for r in runs if (r[0], r[1], r[2], " ".join(r[3])) not in done]
     if len(left) < len(runs):
         say(f"{len(runs) - len(left)} of {len(runs)} runs are there already, in {file}")
     for k, (case, size, preset, settings) in enumerate(left):
         name = " ".join([case, str(size), preset] + settings)
-        if any((c, p, t) == (case, preset, " ".join(settings)) and n < size for c, n, p, t in too_long):
+        if size > too_long.get((case, preset, " ".join(settings)), math.inf):
             say(f"[{k + 1}/{len(left)}] {name}: left out, a smaller one took too long")
             continue
         began = time.monotonic()
         rows = run_one(case, size, preset, settings, limit)
-        if rows[0]["status"] == "too long":
-            too_long.add((case, size, preset, " ".join(settings)))
+        note(rows[0])
         append_rows(file, KEPT, rows)
         say(f"[{k + 1}/{len(left)}] {name}: {rows[0]['status']}, {time.monotonic() - began:.1f} s")
 
@@ -216,6 +229,10 @@ def cheapest_table(groups):
     return lines
 
 
+def mean_ratio(pairs, key):
+    return statistics.geometric_mean([p[key] / own[key] for p, own in pairs]) if pairs else math.nan
+
+
 def change_table(groups):
     """What a change to "molten" does to error and run time of the runs of the same size, over all that is judged."""
     pairs = defaultdict(list)
@@ -229,13 +246,15 @@ def change_table(groups):
     lines = ["| change | judged | error less by 10 % | more by 10 % | of them failed | error, times | run time, times |",
              "|---|---|---|---|---|---|---|"]
     for change, both in pairs.items():
-        sound = [(p, own) for p, own in both if math.isfinite(p["err"]) and min(p["err"], own["err"], p["time"], own["time"]) > 0]
-        error = statistics.geometric_mean([p["err"] / own["err"] for p, own in sound]) if sound else math.nan
-        seconds = statistics.geometric_mean([p["time"] / own["time"] for p, own in sound]) if sound else math.nan
+        sound = [(p, own) for p, own in both if math.isfinite(p["err"])
+                 and min(p["err"], own["err"], p["time"], own["time"]) > 0]
+        error = mean_ratio(sound, "err")
+        seconds = mean_ratio(sound, "time")
         failed = sum(not math.isfinite(p["err"]) for p, _ in both)
         better = sum(p["err"] < 0.9 * own["err"] for p, own in both)
         worse = failed + sum(p["err"] > 1.1 * own["err"] for p, own in both if math.isfinite(p["err"]))
-        lines.append(f"| {change.replace('numerics.', '')} | {len(both)} | {better} | {worse} | {failed} | {error:.2f} | {seconds:.2f} |")
+        lines.append(f"| {change.replace('numerics.', '')} | {len(both)} | {better} | {worse} | {failed} | {error:.2f} | "
+                     f"{seconds:.2f} |")
     return lines if len(lines) > 2 else []
 
 
@@ -328,7 +347,8 @@ def draw(groups, peers, folder):
         figure, axes = pyplot.subplots(figsize=(7, 5))
         series = defaultdict(list)
         for p in shown:
-            series[label(p) + (f" step × {p['settings'].split('=')[-1]}" if "step_factor" in p["settings"] else "")].append(p)
+            step = f" step × {p['settings'].split('=')[-1]}" if "step_factor" in p["settings"] else ""
+            series[label(p) + step].append(p)
         for name, of_name in series.items():
             axes.plot([p["time"] for p in of_name], [p["err"] for p in of_name], ".-", lw=0.7, label=name)
         best = front(shown)

@@ -110,10 +110,6 @@ template <class F> void near(const Cloud& cloud, int dimensions, const Triple& p
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// Weighted least squares of a value over powers of the offset from a point, over h.
 class Fit {
  public:
@@ -126,7 +122,7 @@ class Fit {
   /// At the point itself; nothing where the points do not span the powers.
   std::optional<double> value() const {
     const Eigen::LDLT<Matrix> factors(moments_);
-    if (factors.vectorD().minCoeff() < 1e-6 * moments_(0, 0)) return std::nullopt;
+    if (factors.vectorD().minCoeff() <= 1e-6 * moments_(0, 0)) return std::nullopt;
     return factors.solve(sums_)[0];
   }
 
