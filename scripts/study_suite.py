@@ -181,6 +181,7 @@ def judged(rows):
     for row in rows:
         point = dict(row, time=number(row["wall_time_s"]), err=number(row["error"]), goal=number(row["reach"]))
         if row["quantity"] and math.isfinite(point["goal"]):
+            point["counted"] = max(point["err"], point["goal"] / 10)  # less is chance: errors pass through zero
             groups[row["case"], row["quantity"]].append(point)
     return {name: sorted(points, key=lambda p: p["time"]) for name, points in groups.items()}
 
@@ -246,13 +247,12 @@ def change_table(groups):
     lines = ["| change | judged | error less by 10 % | more by 10 % | of them failed | error, times | run time, times |",
              "|---|---|---|---|---|---|---|"]
     for change, both in pairs.items():
-        sound = [(p, own) for p, own in both if math.isfinite(p["err"])
-                 and min(p["err"], own["err"], p["time"], own["time"]) > 0]
-        error = mean_ratio(sound, "err")
+        sound = [(p, own) for p, own in both if math.isfinite(p["err"]) and min(p["time"], own["time"]) > 0]
+        error = mean_ratio(sound, "counted")
         seconds = mean_ratio(sound, "time")
         failed = sum(not math.isfinite(p["err"]) for p, _ in both)
-        better = sum(p["err"] < 0.9 * own["err"] for p, own in both)
-        worse = failed + sum(p["err"] > 1.1 * own["err"] for p, own in both if math.isfinite(p["err"]))
+        better = sum(p["counted"] < 0.9 * own["counted"] for p, own in both)
+        worse = failed + sum(p["counted"] > 1.1 * own["counted"] for p, own in both if math.isfinite(p["err"]))
         lines.append(f"| {change.replace('numerics.', '')} | {len(both)} | {better} | {worse} | {failed} | {error:.2f} | "
                      f"{seconds:.2f} |")
     return lines if len(lines) > 2 else []
@@ -330,6 +330,35 @@ def measured_peers(file):
     return found
 
 
+def draw_series(axes, points):
+    """Presets in colours; changes to the default and longer time steps in grey, which the tables name."""
+    series = defaultdict(list)
+    for p in points:
+        series[p["preset"], " ".join(s for s in p["settings"].split() if "=" in s and "end_time" not in s)].append(p)
+    for (preset, change), of_one in series.items():
+        style = {"color": "0.75", "lw": 0.5, "ms": 3, "zorder": 1} if change else {"lw": 1.2, "ms": 6, "label": preset}
+        axes.plot([p["time"] for p in of_one], [p["err"] for p in of_one], ".-", **style)
+    axes.plot([], [], ".-", color="0.75", lw=0.5, label="changes to these")
+
+
+def draw_front(axes, best):
+    axes.plot([p["time"] for p in best], [p["err"] for p in best], "k-", lw=2.5, alpha=0.35, label="front")
+    for p in best:
+        axes.annotate(f"{label(p)}, {p['size']}", (p["time"], p["err"]), fontsize=5, xytext=(2, -6),
+                      textcoords="offset points")
+
+
+def draw_peers(axes, peers):
+    for p in peers:
+        name = f"{p['numerics']} {p['size']}"
+        if math.isfinite(p["time"]):
+            axes.plot(p["time"], p["err"], "r*", ms=9)
+            axes.annotate(name, (p["time"], p["err"]), fontsize=6)
+        else:
+            axes.axhline(p["err"], color="r", lw=0.5, ls=":")
+            axes.annotate(name, (0.99, p["err"]), xycoords=("axes fraction", "data"), ha="right", fontsize=6, color="r")
+
+
 def draw(groups, peers, folder):
     """One picture a quantity. Returns their names; none without matplotlib."""
     try:
@@ -345,21 +374,9 @@ def draw(groups, peers, folder):
         if not shown:
             continue
         figure, axes = pyplot.subplots(figsize=(7, 5))
-        series = defaultdict(list)
-        for p in shown:
-            step = f" step × {p['settings'].split('=')[-1]}" if "step_factor" in p["settings"] else ""
-            series[label(p) + step].append(p)
-        for name, of_name in series.items():
-            axes.plot([p["time"] for p in of_name], [p["err"] for p in of_name], ".-", lw=0.7, label=name)
-        best = front(shown)
-        axes.plot([p["time"] for p in best], [p["err"] for p in best], "k-", lw=2.5, alpha=0.35, label="front")
-        for p in peers.get((case, quantity), []):
-            if math.isfinite(p["time"]):
-                axes.plot(p["time"], p["err"], "r*", ms=9)
-                axes.annotate(f"{p['numerics']} {p['size']}", (p["time"], p["err"]), fontsize=6)
-            else:
-                axes.axhline(p["err"], color="r", lw=0.5, ls=":")
-                axes.annotate(f"{p['numerics']} {p['size']}", (max(q["time"] for q in shown), p["err"]), fontsize=6)
+        draw_series(axes, shown)
+        draw_front(axes, front(shown))
+        draw_peers(axes, peers.get((case, quantity), []))
         axes.axhline(shown[0]["goal"], color="g", lw=1, ls="--", label="reach")
         axes.set(xscale="log", yscale="log", xlabel="run time, s", ylabel="error", title=f"{case}: {quantity}")
         axes.grid(True, which="both", lw=0.2)
@@ -382,7 +399,8 @@ def report(folder):
     sections = [("Least errors", smallest_table(groups), "Bold: within reach."),
                 ("Cheapest settings for an error", cheapest_table(groups), ""),
                 ("Peers", peer_lines(groups, peers), "Run times of peers are measured beside ours, where given."),
-                ("Changes to the default", change_table(groups), "Means are geometric, over what did not fail."),
+                ("Changes to the default", change_table(groups),
+                 "Means are geometric, over what did not fail; errors below a tenth of the reach count as a tenth."),
                 ("How far the time step can be pushed", margin_table(groups), "")]
     text = "# Results of the study\n\nWritten by `scripts/study`.\n"
     for title, lines, note in sections:
