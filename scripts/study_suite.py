@@ -336,7 +336,9 @@ def draw_series(axes, points):
     for p in points:
         series[p["preset"], " ".join(s for s in p["settings"].split() if "=" in s and "end_time" not in s)].append(p)
     for (preset, change), of_one in series.items():
-        style = {"color": "0.75", "lw": 0.5, "ms": 3, "zorder": 1} if change else {"lw": 1.2, "ms": 6, "label": preset}
+        style = {"color": "0.75", "lw": 0.5, "ms": 3, "zorder": 1}
+        if not change:
+            style = {"color": f"C{PRESETS.index(preset)}", "lw": 1.2, "ms": 6, "label": preset}
         axes.plot([p["time"] for p in of_one], [p["err"] for p in of_one], ".-", **style)
     axes.plot([], [], ".-", color="0.75", lw=0.5, label="changes to these")
 
