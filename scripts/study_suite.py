@@ -186,6 +186,11 @@ def judged(rows):
     return {name: sorted(points, key=lambda p: p["time"]) for name, points in groups.items()}
 
 
+def changes(p):
+    """What a run changes in its preset; its other settings belong to the case."""
+    return " ".join(s for s in p["settings"].split() if s.startswith(("numerics.", "step_factor=")))
+
+
 def front(points):
     """The points that no quicker one beats."""
     best, kept = math.inf, []
@@ -238,12 +243,10 @@ def change_table(groups):
     """What a change to "molten" does to error and run time of the runs of the same size, over all that is judged."""
     pairs = defaultdict(list)
     for points in groups.values():
-        own = {p["size"]: p for p in points if p["preset"] == "molten" and "numerics." not in p["settings"]
-               and "step_factor" not in p["settings"]}
+        own = {p["size"]: p for p in points if p["preset"] == "molten" and not changes(p)}
         for p in points:
-            if p["preset"] == "molten" and "numerics." in p["settings"] and p["size"] in own:
-                change = " ".join(s for s in p["settings"].split() if s.startswith("numerics."))
-                pairs[change].append((p, own[p["size"]]))
+            if p["preset"] == "molten" and "numerics." in changes(p) and p["size"] in own:
+                pairs[changes(p)].append((p, own[p["size"]]))
     lines = ["| change | judged | error less by 10 % | more by 10 % | of them failed | error, times | run time, times |",
              "|---|---|---|---|---|---|---|"]
     for change, both in pairs.items():
@@ -269,8 +272,7 @@ def margin_table(groups):
             if not pushed:
                 continue
             size = next(iter(pushed.values()))["size"]
-            own = [p for p in of_preset if p["size"] == size and "numerics." not in p["settings"]
-                   and "step_factor" not in p["settings"]]
+            own = [p for p in of_preset if p["size"] == size and not changes(p)]
             cells = [percent(own[0]["err"]) if own else "–"]
             for k in MARGINS:
                 p = pushed.get(str(k))
@@ -334,7 +336,7 @@ def draw_series(axes, points):
     """Presets in colours; changes to the default and longer time steps in grey, which the tables name."""
     series = defaultdict(list)
     for p in points:
-        series[p["preset"], " ".join(s for s in p["settings"].split() if "=" in s and "end_time" not in s)].append(p)
+        series[p["preset"], changes(p)].append(p)
     for (preset, change), of_one in series.items():
         style = {"color": "0.75", "lw": 0.5, "ms": 3, "zorder": 1}
         if not change:
