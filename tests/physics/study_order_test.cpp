@@ -96,7 +96,7 @@ TEST(SlowStudyOrder, YieldingChannelsAreWithinTheirReach) {
 TEST(SlowStudyOrder, CavityIsWithinItsReach) {
   const Pair p = errors_of("cavity", 50, "internal");
   EXPECT_LT(p.coarse, 0.004);
-  EXPECT_LT(p.fine, 0.0035);
+  EXPECT_LT(p.fine, 0.003);
   EXPECT_LT(error_of("cavity", 50, "internal", {}, "v_rms"), 0.004);
 }
 
