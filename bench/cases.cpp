@@ -112,11 +112,9 @@ template <int Dim, class Real> State<Dim, Real> full_block(long long count, doub
 }
 
 template <class Real> State<3, Real> bunny() {
-  const std::filesystem::path source = MOLTEN_SOURCE_DIR;
-  std::vector<std::string> overrides = {"numerics.time_step_levels=0"};  // one evaluation a step
-  if (!std::filesystem::exists(source / "scenes/models/bunny.obj"))
-    overrides.insert(overrides.end(), {"fluid.mesh=\"\"", "fluid.sphere={center=[0,0,0.08],radius=0.06}"});
-  const Scene scene = read_scene(source / "scenes/bunny.toml", overrides);
+  // one evaluation a step
+  const Scene scene =
+      read_scene(std::filesystem::path(MOLTEN_SOURCE_DIR) / "scenes/bunny.toml", {"numerics.time_step_levels=0"});
   return state_of<3, Real>(scene, fill_bodies(scene, features_of(scene)));
 }
 

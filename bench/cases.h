@@ -34,7 +34,7 @@ template <int Dim, class Real> State<Dim, Real> jittered_block(long long count, 
 /// The same with every column that a term reads: temperatures, viscosities, stresses and compressions at random.
 template <int Dim, class Real> State<Dim, Real> full_block(long long count, double smoothing_ratio);
 
-/// scenes/bunny.toml as it starts, or a ball of as many particles where the model was not fetched.
+/// scenes/bunny.toml as it starts.
 template <class Real> State<3, Real> bunny();
 
 /// Finds the rates and compares those of some particles with the naive twin; returns an empty string or what differs.

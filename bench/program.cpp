@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "core/error.h"
 #include "io/program/report.h"
 #include "version.h"
 
@@ -59,7 +60,14 @@ int run_program(int argc, char** argv, const std::function<void()>& add, const s
 long long steps_to_time(long long usual) { return asked_steps > 0 ? asked_steps : usual; }
 
 benchmark::internal::Benchmark* add(const std::string& name, const std::function<void(benchmark::State&)>& run) {
-  return benchmark::RegisterBenchmark(name.c_str(), run)->UseRealTime()->Unit(benchmark::kMillisecond);
+  const auto run_or_say_why_not = [run](benchmark::State& bench) {
+    try {
+      run(bench);
+    } catch (const Error& error) {
+      bench.SkipWithError(error.what());
+    }
+  };
+  return benchmark::RegisterBenchmark(name.c_str(), run_or_say_why_not)->UseRealTime()->Unit(benchmark::kMillisecond);
 }
 
 void count_work(benchmark::State& bench, const Work& work, double seconds, double peak_arithmetic) {
