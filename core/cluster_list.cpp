@@ -88,6 +88,10 @@ template <int Dim, class Real> void ClusterList<Dim, Real>::number_shifts(const 
       rest /= sides;
     }
   }
+  in_columns_.resize(order.clusters() + ClusterChunk::mask_bits);
+  for_each_slot(order.clusters(), [&](std::size_t c) {
+    in_columns_[c] = static_cast<ListEntry>(c) - shifts_.seen_from(-order.cells[c][Grid<Dim>::along]);
+  });
 }
 
 /// Lists the neighbours of a chunk's clusters, row by row. The rows of a column look at the same columns around it,
@@ -110,20 +114,21 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
 
   void list(ClusterChunk& chunk) {
     chunk.rows.clear();
-    entries_.clear();
+    run_begins_.clear();
+    run_lengths_.clear();
     masks_.clear();
     for (std::uint32_t c = chunk.begin; c < chunk.end;) {
       if (c == chunk.begin || !same_column(c, c - 1)) look_around(order_.cells[c]);
       const Row row{c, row_end(c, chunk.end)};
-      chunk.rows.push_back({c, static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(masks_.size())});
+      chunk.rows.push_back(row_from(c));
       list_row(row);
       c = row.end;
     }
-    chunk.rows.push_back(
-        {chunk.end, static_cast<std::uint32_t>(entries_.size()), static_cast<std::uint32_t>(masks_.size())});
-    entries_.resize(entries_.size() + ClusterChunk::mask_bits);
-    chunk.entries = std::vector<ListEntry>(entries_.begin(), entries_.end());  // no more than they need
-    chunk.masks = std::vector<std::uint16_t>(masks_.begin(), masks_.end());
+    chunk.rows.push_back(row_from(chunk.end));
+    const auto no_more_than_needed = [](const auto& v) { return std::decay_t<decltype(v)>(v.begin(), v.end()); };
+    chunk.run_begins = no_more_than_needed(run_begins_);
+    chunk.run_lengths = no_more_than_needed(run_lengths_);
+    chunk.masks = no_more_than_needed(masks_);
   }
 
  private:
@@ -145,6 +150,11 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
     std::int32_t number;           // of the shift to its segment 0
     std::int32_t segments;         // to the image
   };
+
+  /// The row that begins with this cluster and with the next run.
+  ClusterChunk::Row row_from(std::uint32_t cluster) const {
+    return {cluster, static_cast<std::uint32_t>(run_begins_.size()), static_cast<std::uint32_t>(masks_.size())};
+  }
 
   bool same_column(std::uint32_t a, std::uint32_t b) const {
     return order_.grid.column(order_.cells[a]) == order_.grid.column(order_.cells[b]);
@@ -252,8 +262,7 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
 
   void keep_met(const Row& row) {
     load_own(row);
-    const std::size_t first = entries_.size();
-    entries_.resize(first + near_count_ + 1);
+    entries_.resize(near_count_ + 1 + ClusterChunk::mask_bits);
     flags_.resize(near_count_ + ClusterChunk::mask_bits);
     std::size_t count = 0;
     const std::int32_t segment = order_.cells[row.begin][along];
@@ -261,13 +270,29 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
       const Target& target = targets_[target_of_[k]];
       const std::int32_t further = order_.cells[near_[k]][along] - segment;
       flags_[count] = meetings(near_[k], target, further);
-      entries_[first + count] =
-          static_cast<ListEntry>(target.number + further) << list_.shifts_.cluster_bits | near_[k];
+      entries_[1 + count] = static_cast<ListEntry>(target.number - segment) << list_.shifts_.cluster_bits | near_[k];
       count += flags_[count] != 0;
     }
-    entries_.resize(first + count);
+    keep_runs(count);
     std::fill_n(flags_.begin() + static_cast<std::ptrdiff_t>(count), ClusterChunk::mask_bits, 0);
     for (std::uint32_t g = 0; g < own_count_; ++g) keep_shells(static_cast<int>(g), count);
+  }
+
+  /// The row's entries.
+  void keep_runs(std::size_t count) {
+    std::size_t begin = 0;
+    const auto end_run = [&](std::size_t end) {
+      run_begins_.push_back(entries_[1 + begin]);
+      run_lengths_.push_back(static_cast<std::uint8_t>(end - begin));
+      begin = end;
+    };
+    for (std::size_t k = 0; k < count; k += ClusterChunk::mask_bits) {
+      const bool long_enough = k % ClusterChunk::longest_run == 0;
+      for (unsigned ends = breaks(&entries_[1 + k]) | long_enough; ends; ends &= ends - 1)
+        if (const std::size_t end = k + static_cast<unsigned>(std::countr_zero(ends)); end > begin && end < count)
+          end_run(end);
+    }
+    if (count > 0) end_run(count);
   }
 
   /// The bits of one of the row's clusters.
@@ -325,8 +350,10 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
   std::vector<Target> targets_;
   std::vector<std::uint32_t> near_, target_of_;  // clusters with boxes near the row's; near_count_ of them
   std::size_t near_count_ = 0;
-  std::vector<std::uint16_t> flags_;  // of the row's entries
-  std::vector<ListEntry> entries_;    // of the chunk
+  std::vector<ListEntry> entries_;     // of the row, from number 1 on, to segment 0 of their columns
+  std::vector<std::uint16_t> flags_;   // of these
+  std::vector<ListEntry> run_begins_;  // of the chunk
+  std::vector<std::uint8_t> run_lengths_;
   std::vector<std::uint16_t> masks_;
 };
 
@@ -362,11 +389,12 @@ void ClusterList<Dim, Real>::list_clusters(std::vector<ClusterChunk>& chunks, co
 }
 
 template <int Dim, class Real> std::size_t ClusterList<Dim, Real>::bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = bytes_of(in_columns_);
   for (const std::vector<float>& side : lasting_boxes_) sum += bytes_of(side);
   for (const auto* chunks : {&chunks_, &warm_chunks_}) {
     sum += bytes_of(*chunks);
-    for (const ClusterChunk& c : *chunks) sum += bytes_of(c.rows) + bytes_of(c.entries) + bytes_of(c.masks);
+    for (const ClusterChunk& c : *chunks)
+      sum += bytes_of(c.rows) + bytes_of(c.run_begins) + bytes_of(c.run_lengths) + bytes_of(c.masks);
   }
   return sum;
 }

@@ -1,8 +1,9 @@
 // For every cluster, those of which a particle is within reach of one of its own.
 //
-// Neighbouring clusters of a column share one row of entries, with bits for each of them: half of the memory that
-// lists of their own would take. The bits tell the shell, too: the list is good until particles have
-// moved half a skin, but only the clusters within the support and what particles have moved so far can matter.
+// Neighbouring clusters of a column share one row of entries, with bits for each of them. What they meet of another
+// column follows one another there, so a row keeps runs: their first entries and lengths. The bits tell the shell, too:
+// the list is good until particles have moved half a skin, but only the clusters within the support and what particles
+// have moved so far can matter.
 #pragma once
 
 #include <algorithm>
@@ -28,16 +29,22 @@ inline constexpr int shell_bits = 2;      // that number the smallest shell an e
 struct ClusterChunk {
   /// Clusters that follow one another in a column and share entries.
   struct Row {
-    std::uint32_t first_cluster, first_entry, first_mask;
+    std::uint32_t first_cluster, first_run, first_mask;
     bool operator==(const Row&) const = default;
   };
-  std::uint32_t begin = 0, end = 0;  // clusters
-  std::vector<Row> rows;             // and the end
-  std::vector<ListEntry> entries;    // as seen from the first cluster of the row; mask_bits beyond the end
+  static constexpr std::size_t mask_bits = 16;
+  static constexpr std::size_t longest_run = 128;
+  std::uint32_t begin = 0, end = 0;       // clusters
+  std::vector<Row> rows;                  // and the end
+  std::vector<ListEntry> run_begins;      // as seen from the first cluster of the row to segment 0 of their column
+  std::vector<std::uint8_t> run_lengths;  // clusters that follow one another
   std::vector<std::uint16_t> masks;  // of each row's clusters, for each the shell_bits: bit k of the words for entry k
 
-  static constexpr std::size_t mask_bits = 16;
-  std::size_t entries_of(std::size_t row) const { return rows[row + 1].first_entry - rows[row].first_entry; }
+  std::uint32_t clusters_of(std::size_t row) const { return rows[row + 1].first_cluster - rows[row].first_cluster; }
+  /// Of masks, for one of the bits of one of a row's clusters.
+  std::size_t words_of(std::size_t row) const {
+    return (rows[row + 1].first_mask - rows[row].first_mask) / (shell_bits * clusters_of(row));
+  }
   /// Which entries a shell holds, of the words of both bits.
   static unsigned within(int shell, unsigned low, unsigned high) {
     return shell == 0 ? low & ~high : shell == 1 ? low ^ high : low | high;
@@ -112,6 +119,14 @@ template <int Dim, class Real> class ClusterList {
     float *lower[Dim], *upper[Dim];
   };
   class Lister;
+  /// Writes a row's entries, as seen from its first cluster, and up to mask_bits more.
+  void expand(const ClusterChunk& chunk, std::size_t row, ListEntry* to) const {
+    for (std::uint32_t r = chunk.rows[row].first_run; r < chunk.rows[row + 1].first_run; ++r) {
+      const std::uint32_t first = shifts_.cluster(chunk.run_begins[r]), length = chunk.run_lengths[r];
+      copy_more_by(in_columns_.data() + first, length, chunk.run_begins[r] - first, to);
+      to += length;
+    }
+  }
   double range(const ClusterOrder<Dim>& order, int shell) const;
   void place_boxes(const ClusterOrder<Dim>& order, Particles<Dim, Real>& particles);
   void find_boxes(const ClusterOrder<Dim>& order, Particles<Dim, Real>& particles, std::size_t first_cluster);
@@ -122,6 +137,7 @@ template <int Dim, class Real> class ClusterList {
   NeighbourSettings settings_;
   Boxes boxes_;
   std::array<std::vector<float>, 2 * Dim> lasting_boxes_;  // with blocks
+  std::vector<ListEntry> in_columns_;  // each cluster as an entry, seen from segment 0 of its column
   ShiftTable<Dim> shifts_;
   std::vector<ClusterChunk> chunks_, warm_chunks_;
   bool warm_listed_ = false;
@@ -133,25 +149,30 @@ void ClusterList<Dim, Real>::for_each(const ClusterChunk& chunk, const ClusterOr
                                       F&& f) const {
   constexpr int along = Grid<Dim>::along;
   std::size_t longest = 0;
-  for (std::size_t r = 0; r + 1 < chunk.rows.size(); ++r) longest = std::max(longest, chunk.entries_of(r));
-  const std::size_t room = longest + ClusterChunk::mask_bits;
-  std::vector<ListEntry> lists(clusters_a_row * room);
+  for (std::size_t r = 0; r + 1 < chunk.rows.size(); ++r) longest = std::max(longest, chunk.words_of(r));
+  const std::size_t room = (longest + 1) * ClusterChunk::mask_bits;
+  std::vector<ListEntry> entries(room), lists(clusters_a_row * room);
   std::array<std::size_t, clusters_a_row> lengths;
+  if (chunk.rows.size() > 1) expand(chunk, 0, entries.data());
   for (std::size_t r = 0; r + 1 < chunk.rows.size(); ++r) {
     const ClusterChunk::Row& row = chunk.rows[r];
-    const std::uint32_t first = row.first_cluster, count = chunk.rows[r + 1].first_cluster - first;
-    const std::size_t words = ClusterChunk::words(chunk.entries_of(r));
+    const std::uint32_t first = row.first_cluster, count = chunk.clusters_of(r);
+    const std::size_t words = chunk.words_of(r);
     // All lists of the row before the first is used: what comes after one list's last pair then waits for nothing.
     for (std::uint32_t k = 0; k < count; ++k) {
       const std::int32_t further = order.cells[first + k][along] - order.cells[first][along];
       const std::uint16_t* const low = chunk.masks.data() + row.first_mask + k * shell_bits * words;
-      lengths[k] = select_less_by(chunk.entries.data() + row.first_entry, words, shifts_.seen_from(further),
-                                  lists.data() + k * room,
+      lengths[k] = select_less_by(entries.data(), words, shifts_.seen_from(further), lists.data() + k * room,
                                   [=](std::size_t w) { return ClusterChunk::within(shell, low[w], low[words + w]); });
     }
-    const ClusterChunk::Row& next = chunk.rows[r + 1];
-    prefetch(chunk.entries.data() + next.first_entry, longest);
-    prefetch(chunk.masks.data() + next.first_mask, clusters_a_row * shell_bits * words);
+    // The next row's, long before they are read in other pieces than they are written in.
+    if (r + 2 < chunk.rows.size()) {
+      expand(chunk, r + 1, entries.data());
+      const std::uint32_t run = chunk.rows[r + 2].first_run, runs = run - chunk.rows[r + 1].first_run;
+      prefetch(chunk.run_begins.data() + run, runs);
+      prefetch(chunk.run_lengths.data() + run, runs);
+    }
+    prefetch(chunk.masks.data() + chunk.rows[r + 1].first_mask, clusters_a_row * shell_bits * words);
     for (std::uint32_t k = 0; k < count; ++k)
       f(first + k, std::span<const ListEntry>(lists.data() + k * room, lengths[k]));
   }

@@ -380,6 +380,29 @@ inline int write_set_bits(unsigned mask, std::uint32_t first, std::uint32_t* to)
 #endif
 }
 
+/// Writes from[k] + by for k < count. Reads and writes up to 16 beyond the last.
+inline void copy_more_by(const std::uint32_t* from, std::size_t count, std::uint32_t by, std::uint32_t* to) {
+  using Numbers [[gnu::vector_size(64)]] = std::uint32_t;
+  for (std::size_t k = 0; k < count; k += 16) {
+    Numbers numbers;
+    std::memcpy(&numbers, from + k, sizeof numbers);
+    numbers += by;
+    std::memcpy(to + k, &numbers, sizeof numbers);
+  }
+}
+
+/// Bit k: is numbers[k] not the one before and 1? Of 16.
+inline unsigned breaks(const std::uint32_t* numbers) {
+#if defined(__AVX512F__)
+  const __m512i following = _mm512_maskz_add_epi32(0xffff, _mm512_loadu_si512(numbers - 1), _mm512_set1_epi32(1));
+  return _mm512_cmpneq_epi32_mask(_mm512_loadu_si512(numbers), following);
+#else
+  unsigned mask = 0;
+  for (int k = 0; k < 16; ++k) mask |= static_cast<unsigned>(numbers[k] != numbers[k - 1] + 1) << k;
+  return mask;
+#endif
+}
+
 /// Copies those numbers whose bits are set, less `by`; returns how many. mask_of(w) has the bits of the 16 from 16 w
 /// on. Reads and writes up to 16 beyond the last.
 template <class MaskOf>
