@@ -35,9 +35,16 @@ template <int Dim> struct Moved {
   }
 };
 
+/// Does a step move nothing but fluid particles with their velocities, and change nothing but those and densities?
+template <int Dim, class Real> bool only_flows(const State<Dim, Real>& s) {
+  const Features& f = s.features;
+  return !(f.heat || f.internal_energy || f.sleep || f.xsph || s.particles.has(shift_velocity) ||
+           s.particles.has(inlet) || s.particles.has(held));
+}
+
 /// By leap-frog or symplectic Euler. Four particles at once: the pass is bound by memory, and one by one by
-/// instructions. What is padding has no rates, so it stays at zero.
-template <bool leap_frog, int Dim, class Real> class Integrator {
+/// instructions. What is padding has no rates, so it stays at zero. `plain`: for a state that only flows.
+template <bool leap_frog, bool plain, int Dim, class Real> class Integrator {
   using Wide = ClusterLanes;
 
  public:
@@ -53,11 +60,12 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
   /// Moves the particles of a cluster.
   void advance(std::size_t cluster, Moved<Dim>& all) const {
     const std::size_t slot = cluster * cluster_size;
-    if (driven_ || mover_.may_collide(cluster))
+    if ((!plain && driven_) || mover_.may_collide(cluster))
       guide(cluster, all);
     else
       let_go(slot, all);
     advance_compression(slot);
+    if constexpr (plain) return;
     if (s_.features.internal_energy) add(internal_energy_ + slot, kick_, internal_energy_rate_ + slot);
     if (s_.features.heat) add(temperature_ + slot, dt_, temperature_rate_ + slot);
     if (s_.features.sleep) count_rest(slot);
@@ -129,6 +137,7 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
   Kicked kicked(int d, std::size_t slot) const {
     const auto& v = leap_frog ? half_velocity_.c : velocity_.c;
     const Wide velocity = read(v[d] + slot) + Wide(kick_) * read(acceleration_[d] + slot);
+    if constexpr (plain) return {velocity, velocity};
     return {drift_.overwritten(velocity, d, slot), drift_.rate(velocity, d, slot)};
   }
 
@@ -220,16 +229,17 @@ template <bool leap_frog, int Dim, class Real> class Integrator {
   bool driven_ = inlet_ || held_;
 };
 
-/// What the pair passes read of a cluster's particles, from their state.
-template <int Dim, class Real> class Preparation {
+/// What the pair passes read of a cluster's particles, from their state. `plain`: of one that only flows.
+template <bool plain, int Dim, class Real> class Preparation {
  public:
   explicit Preparation(State<Dim, Real>& s) : s_(s) {}
 
   void of(std::size_t cluster) const {
     const std::size_t slot = cluster * cluster_size;
     s_.neighbours.localise(s_.particles, cluster);
-    if (held_) press(slot);
+    if (!plain && held_) press(slot);
     store_rounded(s_.parameters.eos.term(load_double<cluster_size>(compression_ + slot)), pressure_term_ + slot);
+    if constexpr (plain) return;
     if (s_.features.heat)
       store_rounded(load<cluster_size>(temperature_ + slot) - ClusterLanes(s_.parameters.reference_temperature),
                     local_temperature_ + slot);
@@ -255,9 +265,9 @@ template <int Dim, class Real> class Preparation {
 };
 
 /// Moves all active clusters and prepares them for the next step's passes.
-template <bool leap_frog, int Dim, class Real> Moved<Dim> move_all(State<Dim, Real>& s) {
-  const Integrator<leap_frog, Dim, Real> integrator(s);
-  const Preparation<Dim, Real> preparation(s);
+template <bool leap_frog, bool plain, int Dim, class Real> Moved<Dim> move_all(State<Dim, Real>& s) {
+  const Integrator<leap_frog, plain, Dim, Real> integrator(s);
+  const Preparation<plain, Dim, Real> preparation(s);
   const std::size_t first = s.neighbours.first_slot(Block::active) / cluster_size;
   return reduce_slots(
       s.neighbours.clusters() - first, Moved<Dim>{0, std::vector<Kick<Dim>>(s.bodies.count())},
@@ -284,7 +294,9 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
     s.bodies.answer(kick_time(s), s.parameters.particle_mass);
     s.bodies.begin_step(s.contact, s.clock.time, s.clock.dt, s.parameters.gravity);
   }
-  const Moved<Dim> moved = kind == IntegratorKind::leap_frog ? move_all<true>(s) : move_all<false>(s);
+  const Moved<Dim> moved = kind != IntegratorKind::leap_frog ? move_all<false, false>(s)
+                           : only_flows(s)                   ? move_all<true, true>(s)
+                                                             : move_all<true, false>(s);
   s.neighbours.moved(std::sqrt(moved.way2));
   s.sleep.warm_time += s.clock.dt;
   s.sleep.travel +=
@@ -294,7 +306,7 @@ template <int Dim, class Real> void integrate_and_collide(State<Dim, Real>& s) {
 }
 
 template <int Dim, class Real> void prepare(State<Dim, Real>& s, std::size_t first_slot) {
-  const Preparation<Dim, Real> preparation(s);
+  const Preparation<false, Dim, Real> preparation(s);
   const std::size_t first = first_slot / cluster_size;
   for_each_slot(s.neighbours.clusters() - first, [&](std::size_t k) { preparation.of(first + k); });
 }
