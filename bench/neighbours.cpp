@@ -39,7 +39,7 @@ template <int Dim, class Real> std::string check_list(const State<Dim, Real>& s)
     std::vector<std::uint32_t> listed;
     s.neighbours.for_each_list(chunks[k], [&](std::uint32_t c, auto list) {
       if (c == cluster)
-        for (const ListEntry e : list) listed.push_back(static_cast<std::uint32_t>(shifts.cluster(e)));
+        for (const ListEntry e : list) listed.push_back(static_cast<std::uint32_t>(shifts.group(e)));
     });
     for (std::size_t i = std::size_t{cluster} * cluster_size; i < (std::size_t{cluster} + 1) * cluster_size; ++i)
       for (std::size_t j = 0; j < p.slots(); ++j) {
@@ -47,7 +47,7 @@ template <int Dim, class Real> std::string check_list(const State<Dim, Real>& s)
         double r2 = 0;
         for (int d = 0; d < Dim; ++d) r2 += std::pow(p[position][d][i] - p[position][d][j], 2);
         if (r2 < std::pow(s.parameters.support_radius, 2) &&
-            std::count(listed.begin(), listed.end(), static_cast<std::uint32_t>(j / cluster_size)) != 1)
+            std::count(listed.begin(), listed.end(), static_cast<std::uint32_t>(j / group_size<Real>)) != 1)
           return fmt::format("particle {} is missing in the list of {}", p[id][0][j], p[id][0][i]);
       }
   }

@@ -44,12 +44,12 @@ class Stopwatch {
 /// arithmetic, idle ones too, in the peak that the probe measured before); `seconds`: of all iterations.
 void count_work(benchmark::State& bench, const Work& work, double seconds, double peak_arithmetic);
 
-/// Pairs that a pass over the present list computes: clusters against clusters.
+/// Pairs that a pass over the present list computes: clusters against groups.
 template <int Dim, class Real> double listed_pairs(const State<Dim, Real>& s) {
   double entries = 0;
   for (const ClusterChunk& chunk : s.neighbours.chunks())
     s.neighbours.for_each_list(chunk, [&](std::uint32_t, auto list) { entries += static_cast<double>(list.size()); });
-  return entries * cluster_size * cluster_size;
+  return entries * cluster_size * group_size<Real>;
 }
 
 template <int Dim, class Real> double bytes_a_particle(const State<Dim, Real>& s) {

@@ -74,8 +74,10 @@ template <int Dim, class Real> void ClusterList<Dim, Real>::number_shifts(const 
     count *= 2 * shifts_.reach[d] + 1;
   }
   // Entries of a row are seen from its first cluster, which may be some segments before another.
-  shifts_.cluster_bits = 32 - static_cast<int>(std::bit_width(count - 1 + segments_a_row));
-  if (order.clusters() >> shifts_.cluster_bits)
+  shifts_.slots_a_group = group_size<Real>;
+  shifts_.group_bits = 32 - static_cast<int>(std::bit_width(count - 1 + segments_a_row));
+  const std::size_t groups = order.clusters() * groups_a_cluster<Real>;
+  if (groups >> shifts_.group_bits)
     throw Error(ExitCode::usage, "numerics: " + std::to_string(order.clusters() * cluster_size) +
                                      " particles at this support radius are more than one neighbour list holds; lower "
                                      "numerics.smoothing_ratio or the number of particles");
@@ -88,15 +90,16 @@ template <int Dim, class Real> void ClusterList<Dim, Real>::number_shifts(const 
       rest /= sides;
     }
   }
-  in_columns_.resize(order.clusters() + ClusterChunk::mask_bits);
-  for_each_slot(order.clusters(), [&](std::size_t c) {
-    in_columns_[c] = static_cast<ListEntry>(c) - shifts_.seen_from(-order.cells[c][Grid<Dim>::along]);
+  in_columns_.resize(groups + ClusterChunk::mask_bits);
+  for_each_slot(groups, [&](std::size_t g) {
+    const Cell<Dim>& cell = order.cells[g / groups_a_cluster<Real>];
+    in_columns_[g] = static_cast<ListEntry>(g) - shifts_.seen_from(-cell[Grid<Dim>::along]);
   });
 }
 
 /// Lists the neighbours of a chunk's clusters, row by row. The rows of a column look at the same columns around it,
-/// each with a cursor that only moves forward: first all clusters whose boxes are near the row's, then of these the
-/// ones of which a particle is near one of the row's.
+/// each with a cursor that only moves forward: first all clusters whose boxes are near the row's, then of their groups
+/// the ones of which a particle is near one of the row's.
 template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
  public:
   Lister(const ClusterList& list, const ClusterOrder<Dim>& order, const Particles<Dim, Real>& particles)
@@ -133,7 +136,7 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
 
  private:
   static constexpr int along = Dim - 1;
-  static constexpr int N = native_lanes<Real>, I = cluster_size, J = N / I;
+  static constexpr int N = native_lanes<Real>, I = cluster_size, J = group_size<Real>, groups = groups_a_cluster<Real>;
   using Wide = Lanes<Real, N>;
   static_assert(N >= cluster_size && clusters_a_row == 4 && shells == 3 && shell_bits == 2);
 
@@ -253,25 +256,31 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
     }
     if (near_count_ + boxes_at_once > near_.size())
       near_.resize(2 * near_.size() + 256), target_of_.resize(near_.size());
-    const unsigned hits = less_mask(distance2, L(range_ * range_)) & ((1u << count) - 1);
+    const unsigned hits = less_lanes(distance2, L(range_ * range_)) & ((1u << count) - 1);
     std::fill_n(target_of_.begin() + static_cast<std::ptrdiff_t>(near_count_), boxes_at_once, target);
     near_count_ += static_cast<std::size_t>(write_set_bits(hits, first, near_.data() + near_count_));
   }
 
-  // ---- of these, the ones of which a particle is within reach of one of the row's ----
+  // ---- of these, the groups of which a particle is within reach of one of the row's ----
 
   void keep_met(const Row& row) {
     load_own(row);
-    entries_.resize(near_count_ + 1 + ClusterChunk::mask_bits);
-    flags_.resize(near_count_ + ClusterChunk::mask_bits);
+    entries_.resize(near_count_ * groups + 1 + ClusterChunk::mask_bits);
+    flags_.resize(near_count_ * groups + ClusterChunk::mask_bits);
     std::size_t count = 0;
     const std::int32_t segment = order_.cells[row.begin][along];
     for (std::size_t k = 0; k < near_count_; ++k) {
       const Target& target = targets_[target_of_[k]];
       const std::int32_t further = order_.cells[near_[k]][along] - segment;
-      flags_[count] = meetings(near_[k], target, further);
-      entries_[1 + count] = static_cast<ListEntry>(target.number - segment) << list_.shifts_.cluster_bits | near_[k];
-      count += flags_[count] != 0;
+      const std::array<std::uint16_t, groups> met = meetings(near_[k], target, further);
+      const ListEntry first = list_.shifts_.seen_from(target.number - segment) | near_[k] * groups;
+      unsigned any = 0;
+      unrolled<groups>([&](auto part) {
+        any |= flags_[count + part] = met[part];
+        entries_[1 + count + part] = first + part;
+      });
+      // All of a cluster or none: runs are longer so.
+      count += any != 0 ? groups : 0;
     }
     keep_runs(count);
     std::fill_n(flags_.begin() + static_cast<std::ptrdiff_t>(count), ClusterChunk::mask_bits, 0);
@@ -321,23 +330,26 @@ template <int Dim, class Real> class ClusterList<Dim, Real>::Lister {
     }
   }
 
-  /// Bit flag(g, s): is a particle of a cluster within shell s of one of the row's cluster g?
-  [[gnu::always_inline]] std::uint16_t meetings(std::uint32_t other, const Target& target, std::int32_t further) const {
+  /// Of each group of a cluster, bit flag(g, s): is one of its particles within shell s of one of the row's cluster g?
+  [[gnu::always_inline]] std::array<std::uint16_t, groups> meetings(std::uint32_t other, const Target& target,
+                                                                    std::int32_t further) const {
     Vec<Dim, Wide> shift;
     for (int d = 0; d < along; ++d) shift[d] = Wide(static_cast<Real>(target.shift[d]));
     shift[along] = Wide(static_cast<Real>((further + target.segments) * order_.grid.width[along]));
-    std::array<Wide, clusters_a_row> nearest;
-    unrolled<cluster_size / J>([&](auto part) {
+    std::array<std::uint16_t, groups> met;
+    unrolled<groups>([&](auto part) __attribute__((always_inline)) {
       Vec<Dim, Wide> x;
       unrolled<Dim>([&](auto d) {
         x[d] = load_j<J, Real, N>(local_[d] + std::size_t{other} * cluster_size + part * J) + shift[d];
       });
+      std::array<Wide, clusters_a_row> distance2;
       unrolled<clusters_a_row>([&](auto g) {
         const Vec<Dim, Wide> way = own_[g] - x;
-        nearest[g] = part == 0 ? dot(way, way) : min(nearest[g], dot(way, way));
+        distance2[g] = dot(way, way);
       });
+      met[part] = static_cast<std::uint16_t>(any_less_bits<clusters_a_row * shells>(distance2, reach2_));
     });
-    return static_cast<std::uint16_t>(any_less_bits<clusters_a_row * shells>(nearest, reach2_));
+    return met;
   }
 
   const ClusterList& list_;

@@ -1,8 +1,9 @@
-// For every cluster, those of which a particle is within reach of one of its own.
+// For every cluster, the groups of which a particle is within reach of one of its own. A group is a cluster or, where
+// lanes are narrow, a part of one: as many particles as lanes pair with a whole cluster at once.
 //
 // Neighbouring clusters of a column share one row of entries, with bits for each of them. What they meet of another
 // column follows one another there, so a row keeps runs: their first entries and lengths. The bits tell the shell, too:
-// the list is good until particles have moved half a skin, but only the clusters within the support and what particles
+// the list is good until particles have moved half a skin, but only the groups within the support and what particles
 // have moved so far can matter.
 #pragma once
 
@@ -17,9 +18,12 @@
 
 namespace molten {
 
-/// A neighbour cluster in the list: its number in the low bits, above them which shift leads from the listing cluster's
+/// A neighbour group in the list: its number in the low bits, above them which shift leads from the listing cluster's
 /// origin to its own (images of periodic axes counted on, so a periodic neighbour needs nothing more).
 using ListEntry = std::uint32_t;
+
+template <class Real> inline constexpr int group_size = native_lanes<Real> / cluster_size;  // slots
+template <class Real> inline constexpr int groups_a_cluster = cluster_size / group_size<Real>;
 
 inline constexpr int clusters_a_row = 4;  // at most
 inline constexpr int shells = 3;          // shell s reaches as far as the support and (s + 1)/shells of the skin
@@ -37,7 +41,7 @@ struct ClusterChunk {
   std::uint32_t begin = 0, end = 0;       // clusters
   std::vector<Row> rows;                  // and the end
   std::vector<ListEntry> run_begins;      // as seen from the first cluster of the row to segment 0 of their column
-  std::vector<std::uint8_t> run_lengths;  // clusters that follow one another
+  std::vector<std::uint8_t> run_lengths;  // groups that follow one another
   std::vector<std::uint16_t> masks;  // of each row's clusters, for each the shell_bits: bit k of the words for entry k
 
   std::uint32_t clusters_of(std::size_t row) const { return rows[row + 1].first_cluster - rows[row].first_cluster; }
@@ -53,7 +57,7 @@ struct ClusterChunk {
   bool operator==(const ClusterChunk&) const = default;
 };
 
-/// Some clusters, each with those of its neighbours that matter to it: parts of a chunk's lists.
+/// Some clusters, each with those of its neighbour groups that matter to it: parts of a chunk's lists.
 struct PartialChunk {
   struct Row {
     std::uint32_t cluster, first_entry, end_entry;
@@ -65,10 +69,12 @@ struct PartialChunk {
   std::size_t bytes() const { return rows.capacity() * sizeof(Row) + entries.capacity() * sizeof(ListEntry); }
 };
 
-/// The offsets between neighbouring cells' origins, numbered: across by columns, along by segments.
+/// What an entry of a list means. The offsets between neighbouring cells' origins are numbered: across by columns,
+/// along by segments.
 template <int Dim> struct ShiftTable {
-  std::array<int, Dim> reach{};                // cells to each side
-  int cluster_bits = 32;                       // of a ListEntry; the rest number the shift
+  std::array<int, Dim> reach{};  // cells to each side
+  int slots_a_group = cluster_size;
+  int group_bits = 32;                         // of a ListEntry; the rest number the shift
   std::vector<std::array<double, Dim>> shift;  // m, on the grid's quantum
 
   std::uint32_t number(const Cell<Dim>& offset) const {
@@ -76,10 +82,12 @@ template <int Dim> struct ShiftTable {
     for (int d = 0; d < Dim; ++d) n = n * (2 * reach[d] + 1) + static_cast<std::uint32_t>(offset[d] + reach[d]);
     return n;
   }
-  std::uint32_t cluster(ListEntry e) const { return e & ((std::uint64_t{1} << cluster_bits) - 1); }
-  const std::array<double, Dim>& of(ListEntry e) const { return shift[std::uint64_t{e} >> cluster_bits]; }
+  std::uint32_t group(ListEntry e) const { return e & ((std::uint64_t{1} << group_bits) - 1); }
+  std::size_t first_slot(ListEntry e) const { return std::size_t{group(e)} * slots_a_group; }
+  std::size_t cluster(ListEntry e) const { return first_slot(e) / cluster_size; }
+  const std::array<double, Dim>& of(ListEntry e) const { return shift[std::uint64_t{e} >> group_bits]; }
   /// The entry as seen from a cluster that many segments further along.
-  ListEntry seen_from(std::int32_t segments) const { return static_cast<ListEntry>(segments) << cluster_bits; }
+  ListEntry seen_from(std::int32_t segments) const { return static_cast<ListEntry>(segments) << group_bits; }
 };
 
 struct NeighbourSettings {
@@ -108,7 +116,7 @@ template <int Dim, class Real> class ClusterList {
     return s;
   }
 
-  /// f(cluster, its neighbours in a shell as a span of ListEntry) for the clusters of a chunk, in order.
+  /// f(cluster, its neighbour groups in a shell as a span of ListEntry) for the clusters of a chunk, in order.
   template <class F> void for_each(const ClusterChunk& chunk, const ClusterOrder<Dim>& order, int shell, F&& f) const;
 
  private:
@@ -122,7 +130,7 @@ template <int Dim, class Real> class ClusterList {
   /// Writes a row's entries, as seen from its first cluster, and up to mask_bits more.
   void expand(const ClusterChunk& chunk, std::size_t row, ListEntry* to) const {
     for (std::uint32_t r = chunk.rows[row].first_run; r < chunk.rows[row + 1].first_run; ++r) {
-      const std::uint32_t first = shifts_.cluster(chunk.run_begins[r]), length = chunk.run_lengths[r];
+      const std::uint32_t first = shifts_.group(chunk.run_begins[r]), length = chunk.run_lengths[r];
       copy_more_by(in_columns_.data() + first, length, chunk.run_begins[r] - first, to);
       to += length;
     }
@@ -137,7 +145,7 @@ template <int Dim, class Real> class ClusterList {
   NeighbourSettings settings_;
   Boxes boxes_;
   std::array<std::vector<float>, 2 * Dim> lasting_boxes_;  // with blocks
-  std::vector<ListEntry> in_columns_;  // each cluster as an entry, seen from segment 0 of its column
+  std::vector<ListEntry> in_columns_;                      // each group as an entry, seen from segment 0 of its column
   ShiftTable<Dim> shifts_;
   std::vector<ClusterChunk> chunks_, warm_chunks_;
   bool warm_listed_ = false;

@@ -170,10 +170,10 @@ template <int Dim, class Real>
 std::int64_t count_between(const State<Dim, Real>& s, std::size_t cluster, ListEntry entry, double support2) {
   const auto local = s.particles[local_position];
   const auto& shift = s.neighbours.shifts().of(entry);
-  const std::size_t other = s.neighbours.shifts().cluster(entry);
+  const std::size_t first = s.neighbours.shifts().first_slot(entry);
   std::int64_t count = 0;
   for (std::size_t i = cluster * cluster_size; i < (cluster + 1) * cluster_size; ++i)
-    for (std::size_t j = other * cluster_size; j < (other + 1) * cluster_size; ++j) {
+    for (std::size_t j = first; j < first + group_size<Real>; ++j) {
       double r2 = 0;
       for (int d = 0; d < Dim; ++d) r2 += std::pow(local[d][i] - shift[d] - local[d][j], 2);
       const bool itself = i == j && std::all_of(shift.begin(), shift.end(), [](double x) { return x == 0; });

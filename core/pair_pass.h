@@ -140,8 +140,8 @@ template <int N, int Dim, class Real, class KernelType, class Finish, class... T
            const Finish& finish, const Terms&... terms)
       : neighbours_(neighbours), kernel_(kernel), finish_(finish), terms_(terms...), columns_(particles) {
     const ShiftTable<Dim>& table = neighbours.shifts();
-    cluster_bits_ = table.cluster_bits;
-    cluster_mask_ = table.cluster(~ListEntry{0});
+    group_bits_ = table.group_bits;
+    group_mask_ = table.group(~ListEntry{0});
     for (const auto& shift : table.shift)
       for (int d = 0; d < Dim; ++d) shifts_.push_back(static_cast<Real>(shift[d]));
   }
@@ -192,7 +192,7 @@ template <int N, int Dim, class Real, class KernelType, class Finish, class... T
   // quicker, as long as all of it fits into the registers; with 16 of them it is slower.
   static constexpr bool looks_ahead =
       vector_registers == 32 && total_components<Reads, Dim> + total_components<Sums, Dim> <= 16;
-  static constexpr int parts = cluster_size / J;  // of a neighbour cluster
+  static constexpr int parts = group_size<Real> / J;  // of a group: 1 on native lanes
 
   /// N pairs before the terms see them.
   struct Place {
@@ -204,9 +204,9 @@ template <int N, int Dim, class Real, class KernelType, class Finish, class... T
   __attribute__((always_inline)) Place place(const Vec<Dim, L>& own, const KernelType& kernel,
                                              std::span<const ListEntry> list, std::size_t k) const {
     const ListEntry e = list[k / parts];
-    const Real* const shift = shifts_.data() + static_cast<std::size_t>(std::uint64_t{e} >> cluster_bits_) * Dim;
+    const Real* const shift = shifts_.data() + static_cast<std::size_t>(std::uint64_t{e} >> group_bits_) * Dim;
     Place p;
-    p.slot = std::size_t{e & cluster_mask_} * cluster_size + k % parts * J;
+    p.slot = std::size_t{e & group_mask_} * group_size<Real> + k % parts * J;
     const pair_pass_detail::Neighbour<J, L, Dim, Real, Columns> j{columns_, p.slot};
     const Vec<Dim, L> other = j[local_position];
     // Relative to the other's origin first: exact, all are multiples of the grid's quantum.
@@ -261,8 +261,8 @@ template <int N, int Dim, class Real, class KernelType, class Finish, class... T
   const Finish& finish_;
   AllTerms terms_;
   Columns columns_;
-  int cluster_bits_;
-  ListEntry cluster_mask_;
+  int group_bits_;
+  ListEntry group_mask_;
   std::vector<Real> shifts_;  // Dim for each shift, m
 };
 

@@ -76,26 +76,6 @@ inline Lanes<Real, N> select_less(Lanes<Real, N> a, Lanes<Real, N> b, Lanes<Real
   return a.v < b.v ? x.v : y.v;
 }
 
-/// Bit k is set where a < b in lane k.
-inline unsigned less_mask(Lanes<float, 8> a, Lanes<float, 8> b) {
-  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps((__m256)a.v, (__m256)b.v, _CMP_LT_OQ)));
-}
-
-/// a < b in any lane?
-template <class Real, int N> inline bool any_less(Lanes<Real, N> a, Lanes<Real, N> b) {
-  if constexpr (N == 1) return a.v < b.v;
-#if defined(__AVX512F__)
-  else if constexpr (N == 16)
-    return _mm512_cmp_ps_mask((__m512)a.v, (__m512)b.v, _CMP_LT_OQ) != 0;
-  else if constexpr (N == 8 && sizeof(Real) == 8)
-    return _mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_LT_OQ) != 0;
-#endif
-  else if constexpr (N == 8)
-    return less_mask(a, b) != 0;
-  else
-    return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)a.v, (__m256d)b.v, _CMP_LT_OQ)) != 0;
-}
-
 /// 8 consecutive numbers from memory.
 inline Lanes<float, 8> load_8(const float* p) { return Lanes<float, 8>((Lanes<float, 8>::Native)_mm256_loadu_ps(p)); }
 
@@ -242,6 +222,23 @@ template <class Real, int N> inline bool all_at_most(Lanes<Real, N> a, Real boun
   }
 }
 
+/// Bit k: is lane k of a below that of b?
+template <class Real, int N> inline unsigned less_lanes(Lanes<Real, N> a, Lanes<Real, N> b) {
+#if defined(__AVX512F__)
+  if constexpr (N == 16)
+    return _mm512_cmp_ps_mask((__m512)a.v, (__m512)b.v, _CMP_LT_OQ);
+  else if constexpr (N == 8 && sizeof(Real) == 8)
+    return _mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_LT_OQ);
+  else
+#endif
+      if constexpr (N == 8 && sizeof(Real) == 4)
+    return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps((__m256)a.v, (__m256)b.v, _CMP_LT_OQ)));
+  else {
+    static_assert(N == 4 && sizeof(Real) == 8);
+    return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd((__m256d)a.v, (__m256d)b.v, _CMP_LT_OQ)));
+  }
+}
+
 /// The largest lane; a lane that is not a number counts as infinite.
 template <class Real, int N> inline Real largest(Lanes<Real, N> a) {
   Real most = lane(a, 0);
@@ -333,9 +330,9 @@ template <int I, class Real, int N> inline Lanes<Real, I> sum_j(Lanes<Real, N> a
   }
 }
 
-/// Bit k: is a lane of a[k % 4] below bounds[k], k < Bounds?
-template <int Bounds, class Real, int N>
-inline unsigned any_less_bits(const std::array<Lanes<Real, N>, 4>& a, const std::array<Real, 16>& bounds) {
+/// The least lanes of four vectors, again and again: lane k has that of a[k % 4].
+template <class Real, int N> inline Lanes<Real, N> least_lanes(const std::array<Lanes<Real, N>, 4>& a) {
+  using V = typename Lanes<Real, N>::Native;
 #if defined(__AVX512F__)
   if constexpr (N == 16) {
     const auto of = [&](int k) { return (__m512)a[k].v; };
@@ -348,13 +345,44 @@ inline unsigned any_less_bits(const std::array<Lanes<Real, N>, 4>& a, const std:
     __m512 m =
         least(_mm512_maskz_shuffle_ps(0xffff, of_01, of_23, 0x44), _mm512_maskz_shuffle_ps(0xffff, of_01, of_23, 0xEE));
     m = least(m, _mm512_maskz_shuffle_f32x4(0xffff, m, m, 0x4E));
-    m = least(m, _mm512_maskz_shuffle_f32x4(0xffff, m, m, 0xB1));
-    return _mm512_cmp_ps_mask(m, _mm512_loadu_ps(bounds.data()), _CMP_LT_OQ) & ((1u << Bounds) - 1);
-  }
+    return {(V)least(m, _mm512_maskz_shuffle_f32x4(0xffff, m, m, 0xB1))};
+  } else if constexpr (N == 8 && sizeof(Real) == 8) {
+    const auto of = [&](int k) { return (__m512d)a[k].v; };
+    const auto least = [](__m512d x, __m512d y) { return _mm512_maskz_min_pd(0xff, x, y); };
+    // Blocks of two lanes: of a[0] and a[1], the same, of a[2] and a[3], the same
+    const __m512d of_01 =
+        least(_mm512_maskz_unpacklo_pd(0xff, of(0), of(1)), _mm512_maskz_unpackhi_pd(0xff, of(0), of(1)));
+    const __m512d of_23 =
+        least(_mm512_maskz_unpacklo_pd(0xff, of(2), of(3)), _mm512_maskz_unpackhi_pd(0xff, of(2), of(3)));
+    __m512d m = least(_mm512_maskz_shuffle_f64x2(0xff, of_01, of_23, 0x44),
+                      _mm512_maskz_shuffle_f64x2(0xff, of_01, of_23, 0xEE));
+    m = least(m, _mm512_maskz_shuffle_f64x2(0xff, m, m, 0xB1));
+    return {(V)_mm512_maskz_shuffle_f64x2(0xff, m, m, 0x88)};
+  } else
 #endif
+      if constexpr (N == 8 && sizeof(Real) == 4) {
+    const auto of = [&](int k) { return (__m256)a[k].v; };
+    const __m256 of_01 = _mm256_min_ps(_mm256_unpacklo_ps(of(0), of(1)), _mm256_unpackhi_ps(of(0), of(1)));
+    const __m256 of_23 = _mm256_min_ps(_mm256_unpacklo_ps(of(2), of(3)), _mm256_unpackhi_ps(of(2), of(3)));
+    const __m256 m = _mm256_min_ps(_mm256_shuffle_ps(of_01, of_23, 0x44), _mm256_shuffle_ps(of_01, of_23, 0xEE));
+    return {(V)_mm256_min_ps(m, _mm256_permute2f128_ps(m, m, 0x01))};
+  } else {
+    static_assert(N == 4 && sizeof(Real) == 8);
+    const auto of = [&](int k) { return (__m256d)a[k].v; };
+    const __m256d of_01 = _mm256_min_pd(_mm256_unpacklo_pd(of(0), of(1)), _mm256_unpackhi_pd(of(0), of(1)));
+    const __m256d of_23 = _mm256_min_pd(_mm256_unpacklo_pd(of(2), of(3)), _mm256_unpackhi_pd(of(2), of(3)));
+    return {(V)_mm256_min_pd(_mm256_permute2f128_pd(of_01, of_23, 0x20), _mm256_permute2f128_pd(of_01, of_23, 0x31))};
+  }
+}
+
+/// Bit k: is a lane of a[k % 4] below bounds[k], k < Bounds?
+template <int Bounds, class Real, int N>
+inline unsigned any_less_bits(const std::array<Lanes<Real, N>, 4>& a, const std::array<Real, 16>& bounds) {
+  static_assert(N % 4 == 0 && Bounds <= 16);
+  const Lanes<Real, N> least = least_lanes(a);
   unsigned bits = 0;
-  for (int k = 0; k < Bounds; ++k) bits |= static_cast<unsigned>(any_less(a[k % 4], Lanes<Real, N>(bounds[k]))) << k;
-  return bits;
+  for (int k = 0; k < Bounds; k += N) bits |= less_lanes(least, load<N>(bounds.data() + k)) << k;
+  return bits & ((1u << Bounds) - 1);
 }
 
 // ---- lists of numbers -----------------------------------------------------------------------------------------------

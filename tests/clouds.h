@@ -106,10 +106,10 @@ template <int Dim, class Real, class F> void for_each_listed(const Cloud<Dim, Re
   for (const ClusterChunk& chunk : c.neighbours.chunks())
     c.neighbours.for_each_list(chunk, [&](std::uint32_t cluster, std::span<const ListEntry> list) {
       for (const ListEntry entry : list) {
-        const std::uint32_t first = c.neighbours.shifts().cluster(entry) * cluster_size;
+        const auto first = static_cast<std::uint32_t>(c.neighbours.shifts().first_slot(entry));
         const auto& shift = c.neighbours.shifts().of(entry);
         for (std::uint32_t i = cluster * cluster_size; i < (cluster + 1) * cluster_size; ++i)
-          for (std::uint32_t j = first; j < first + cluster_size; ++j) {
+          for (std::uint32_t j = first; j < first + group_size<Real>; ++j) {
             if (c.particles.is_padding(i) || c.particles.is_padding(j)) continue;
             std::array<Real, Dim> v;
             for (int d = 0; d < Dim; ++d) v[d] = (local[d][i] - static_cast<Real>(shift[d])) - local[d][j];

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
+
 #include "tests/clouds.h"
 
 namespace molten {
@@ -252,6 +255,56 @@ TYPED_TEST(NeighboursOf, RelistIsTheSameList) {
   c.neighbours.relist(c.particles);
   ASSERT_EQ(before.size(), c.neighbours.chunks().size());
   for (std::size_t k = 0; k < before.size(); ++k) EXPECT_EQ(before[k], c.neighbours.chunks()[k]);
+}
+
+TYPED_TEST(NeighboursOf, ListsNoGroupOutOfReach) {
+  MOLTEN_FLAVOUR;
+  const int cells = Dim == 2 ? 40 : 12;
+  const Cloud<Dim, Real> c(cube<Dim>(cells, 0.1, 0.4), 0.1, domain_between<Dim>(0, 0.1 * cells, {true, true, false}));
+  const std::size_t group = group_size<Real>, slots = c.particles.slots();
+  std::map<std::array<std::size_t, 2>, double> nearest;  // m; by cluster and group
+  for_each_listed(c, [&](std::uint32_t i, std::uint32_t j, const auto& x) {
+    double r2 = 0;
+    for (int d = 0; d < Dim; ++d) r2 += double(x[d]) * x[d];
+    double& least = nearest.try_emplace({i / cluster_size, j / group}, INFINITY).first->second;
+    least = std::min(least, std::sqrt(r2));
+  });
+  EXPECT_GT(nearest.size(), slots / cluster_size);
+  const double reach = c.settings.support_radius + c.settings.skin / shells;
+  const auto is_full = [&](std::size_t cluster) { return !c.particles.is_padding((cluster + 1) * cluster_size - 1); };
+  // Padding is far from all particles but not from padding.
+  for (const auto& [pair, distance] : nearest)
+    if (is_full(pair[0])) {
+      EXPECT_LT(distance, 1.0001 * reach) << pair[0] << ", " << pair[1];
+    }
+}
+
+TYPED_TEST(NeighboursOf, TheOrderDependsOnPositionsAlone) {
+  MOLTEN_FLAVOUR;
+  const auto domain = domain_between<Dim>(-10, 10);
+  const Points points = cube<Dim>(Dim == 2 ? 60 : 16, 0.1, 0.4);
+  const auto ids_of = [](const Cloud<Dim, Real>& c) {
+    const std::int64_t* const ids = c.particles[id][0];
+    return std::vector<std::int64_t>(ids, ids + c.particles.slots());
+  };
+  Cloud<Dim, Real> c(points, 0.1, domain);
+  const auto fresh = ids_of(c);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> way(-0.04, 0.04);
+  const auto move = [&](const auto& place) {
+    const auto x = c.particles[position];
+    for (std::size_t s = 0; s < c.particles.slots(); ++s)
+      for (int d = 0; d < Dim && !c.particles.is_padding(s); ++d)
+        x[d][s] = place(points[static_cast<std::size_t>(c.particles[id][0][s])][d]);
+    c.neighbours.rebuild(c.particles);
+  };
+  move([&](double at) { return at + way(random); });
+  EXPECT_NE(ids_of(c), fresh);
+  move([](double at) { return at; });
+  EXPECT_EQ(ids_of(c), fresh) << "from an order that is nearly right";
+  move([](double at) { return -at; });
+  move([](double at) { return at; });
+  EXPECT_EQ(ids_of(c), fresh) << "from the opposite order";
 }
 
 TYPED_TEST(NeighboursOf, DropsWhatLeavesTheDomain) {
