@@ -1,8 +1,10 @@
 #include "core/neighbours.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "core/particle_pass.h"
 #include "core/simd.h"
@@ -13,9 +15,40 @@ namespace {
 
 constexpr int segment_columns = 4;  // a segment is about this many column widths long
 constexpr double far_away = 1e5;    // spacings; where padding slots sit
+constexpr std::uint32_t nowhere = ~0u;
 
 /// Width of a column in spacings: a cluster of 4 then is about as long as it is wide.
 template <int Dim> constexpr double column_width = Dim == 2 ? 2.0 : 1.5874;
+
+/// f(pile, begin, end) for the stretches of slots that are of one pile, in parallel: long ones, once particles are
+/// sorted.
+template <class F> void for_each_stretch(std::span<const std::uint32_t> pile_of, const F& f) {
+  for_each_piece((pile_of.size() + block_size - 1) / block_size, [&](std::size_t block) {
+    const std::size_t end = std::min(pile_of.size(), (block + 1) * block_size);
+    for (std::size_t k = block * block_size, next; k < end; k = next) {
+      for (next = k + 1; next < end && pile_of[next] == pile_of[k];) ++next;
+      if (pile_of[k] != nowhere) f(pile_of[k], k, next);
+    }
+  });
+}
+
+/// Adds to a number that several threads count in; returns what it was.
+std::uint32_t count_in(std::uint32_t& number, std::size_t by) {
+  return std::atomic_ref(number).fetch_add(static_cast<std::uint32_t>(by), std::memory_order_relaxed);
+}
+
+/// Sorts what was sorted some steps ago: few have changed places since, so each is put in among those before it. Where
+/// that takes many moves it is no such case.
+template <class It, class Before> void sort_again(It begin, It end, const Before& before) {
+  std::ptrdiff_t moves = 8 * (end - begin);
+  for (It k = begin; k != end; ++k) {
+    const auto entry = *k;
+    It to = k;
+    for (; to != begin && before(entry, to[-1]); --to) *to = to[-1];
+    *to = entry;
+    if ((moves -= k - to) < 0) return std::sort(begin, end, before);
+  }
+}
 
 }  // namespace
 
@@ -171,9 +204,24 @@ void Neighbours<Dim, Real>::sort(Particles<Dim, Real>& particles, std::size_t fi
   });
   const std::size_t outside = sort_columns(particles, first_pile, block_of);
   dropped_ += outside;
-  particles.permute(cluster_order(first_pile), particles.count() - outside, first);
-  const std::size_t first_cluster = first / cluster_size;
-  for_each_slot(order_.clusters() - first_cluster, [&](std::size_t k) { localise(particles, first_cluster + k); });
+  const std::unique_ptr<std::int32_t[]> order = cluster_order(first_pile);
+  const std::size_t first_cluster = first / cluster_size, clusters = order_.clusters() - first_cluster;
+  particles.permute({order.get(), clusters * cluster_size}, particles.count() - outside, first);
+  for_each_slot(clusters, [&](std::size_t k) { localise(particles, first_cluster + k); });
+}
+
+/// Which pile a slot's particle belongs to; nowhere outside the domain, and for padding.
+template <int Dim, class Real>
+std::uint32_t Neighbours<Dim, Real>::pile_of(const Particles<Dim, Real>& particles, std::size_t slot,
+                                             std::size_t block) const {
+  if (particles.is_padding(slot)) return nowhere;
+  const auto x = particles[position];
+  Cell<Dim> c{};
+  for (int d = 0; d < Dim; ++d) {
+    if (!order_.grid.periodic[d] && !(x[d][slot] >= domain_.lower[d] && x[d][slot] <= domain_.upper[d])) return nowhere;
+    if (d < Grid<Dim>::along) c[d] = order_.grid.index(d, x[d][slot]);
+  }
+  return static_cast<std::uint32_t>(block * order_.grid.columns() + order_.grid.column(c));
 }
 
 /// Fills entries_ pile by pile, each sorted along the column; ties by id, so that the order depends on state alone.
@@ -186,46 +234,42 @@ std::size_t Neighbours<Dim, Real>::sort_columns(Particles<Dim, Real>& particles,
   const std::size_t slots = particles.slots() - first;
   const auto x = particles[position];
   const auto ids = particles[id][0];
-  std::vector<std::uint32_t> column_of(slots), next(columns + 1, 0);
-  constexpr std::uint32_t nowhere = ~0u;
-  for_each_slot(slots, [&](std::size_t k) {
-    const std::size_t s = first + k;
-    Cell<Dim> c{};
-    bool inside = ids[s] != padding_id;
-    for (int d = 0; d < Dim && inside; ++d) {
-      inside = order_.grid.periodic[d] || (x[d][s] >= domain_.lower[d] && x[d][s] <= domain_.upper[d]);
-      if (d < Grid<Dim>::along) c[d] = order_.grid.index(d, x[d][s]);
-    }
-    const std::size_t block = block_of.empty() ? 0 : static_cast<std::size_t>(block_of[s]);
-    column_of[k] = inside ? static_cast<std::uint32_t>(block * order_.grid.columns() + order_.grid.column(c)) : nowhere;
-  });
-  std::size_t outside = 0;
-  for (std::size_t k = 0; k < slots; ++k)
-    if (column_of[k] != nowhere)
-      ++next[column_of[k] + 1];
-    else
-      outside += ids[first + k] != padding_id;
+  const auto memory = std::make_unique_for_overwrite<std::uint32_t[]>(slots);
+  const std::span<std::uint32_t> column_of(memory.get(), slots);
+  std::vector<std::uint32_t> next(columns + 1, 0);
+  const std::size_t outside = reduce_slots(
+      slots, std::size_t{0},
+      [&](std::size_t k, std::size_t& count) {
+        const std::size_t s = first + k;
+        column_of[k] = pile_of(particles, s, block_of.empty() ? 0 : static_cast<std::size_t>(block_of[s]));
+        count += column_of[k] == nowhere && ids[s] != padding_id;
+      },
+      [](std::size_t& a, std::size_t b) { a += b; });
+  for_each_stretch(column_of,
+                   [&](std::uint32_t c, std::size_t begin, std::size_t end) { count_in(next[c + 1], end - begin); });
   for (std::size_t c = 0; c < columns; ++c) next[c + 1] += next[c];
   entry_begin_.assign(next.begin(), next.end());
   const std::size_t entries = next[columns];
   entries_ = {static_cast<Entry*>(particles.scratch(entries * sizeof(Entry))), entries};
-  for (std::size_t k = 0; k < slots; ++k)
-    if (column_of[k] != nowhere)
-      entries_[next[column_of[k]]++] = {static_cast<float>(x[Dim - 1][first + k] - order_.grid.lower[Dim - 1]),
-                                        static_cast<std::int32_t>(first + k)};
+  for_each_stretch(column_of, [&](std::uint32_t c, std::size_t begin, std::size_t end) {
+    Entry* to = &entries_[count_in(next[c], end - begin)];
+    for (std::size_t s = first + begin; s < first + end; ++s)
+      *to++ = {static_cast<float>(x[Dim - 1][s] - order_.grid.lower[Dim - 1]), static_cast<std::int32_t>(s)};
+  });
   const auto before = [ids](const Entry& a, const Entry& b) {
     return a.along != b.along ? a.along < b.along : ids[a.slot] < ids[b.slot];
   };
   for_each_piece((columns + 63) / 64, [&](std::size_t group) {
     for (std::size_t c = group * 64; c < std::min(columns, (group + 1) * 64); ++c)
-      std::sort(entries_.begin() + entry_begin_[c], entries_.begin() + entry_begin_[c + 1], before);
+      sort_again(entries_.begin() + entry_begin_[c], entries_.begin() + entry_begin_[c + 1], before);
   });
   return outside;
 }
 
 /// Cuts the sorted piles into clusters; gives their order_.cells and order_.pile_begin, and for every new slot its old
 /// one.
-template <int Dim, class Real> std::vector<std::int32_t> Neighbours<Dim, Real>::cluster_order(std::size_t first_pile) {
+template <int Dim, class Real>
+std::unique_ptr<std::int32_t[]> Neighbours<Dim, Real>::cluster_order(std::size_t first_pile) {
   const std::size_t columns = order_.piles() - first_pile;
   const float longest = static_cast<float>(longest_cluster * settings_.spacing);
   const auto cluster_end = [&](std::uint32_t begin, std::uint32_t end) {
@@ -243,7 +287,7 @@ template <int Dim, class Real> std::vector<std::int32_t> Neighbours<Dim, Real>::
   for (std::size_t c = 0; c < columns; ++c) cluster_begin[c + 1] += cluster_begin[c];
   const std::uint32_t first = cluster_begin[0], end = cluster_begin[columns];
   order_.cells.resize(end);
-  std::vector<std::int32_t> order(std::size_t{end - first} * cluster_size, -1);
+  auto order = std::make_unique_for_overwrite<std::int32_t[]>(std::size_t{end - first} * cluster_size);
   for_each_piece((columns + 63) / 64, [&](std::size_t group) {
     for (std::size_t c = group * 64; c < std::min(columns, (group + 1) * 64); ++c) {
       Cell<Dim> cell{};
@@ -256,8 +300,8 @@ template <int Dim, class Real> std::vector<std::int32_t> Neighbours<Dim, Real>::
         const std::uint32_t next = cluster_end(k, entry_begin_[c + 1]);
         cell[Dim - 1] = order_.grid.index(Dim - 1, order_.grid.lower[Dim - 1] + entries_[k].along);
         order_.cells[cluster] = cell;
-        for (std::size_t i = std::size_t{cluster - first} * cluster_size; k < next; ++k, ++i)
-          order[i] = entries_[k].slot;
+        std::int32_t* const slots = &order[std::size_t{cluster - first} * cluster_size];
+        for (int i = 0; i < cluster_size; ++i) slots[i] = k < next ? entries_[k++].slot : -1;
       }
     }
   });

@@ -1,9 +1,10 @@
 // Order and neighbours of the particles: sorts them into clusters along the grid's columns, and lists for every cluster
-// those clusters of which a particle is within the support radius and a skin of one of its own. Good until a particle
+// those groups of which a particle is within the support radius and a skin of one of its own. Good until a particle
 // has moved half a skin.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -74,8 +75,9 @@ template <int Dim, class Real> class Neighbours {
   void choose_grid(const Particles<Dim, Real>& particles, const Cell<Dim>& margin);
   void choose_quantum();
   void sort(Particles<Dim, Real>& particles, std::size_t first_pile, std::span<const Block> block_of);
+  std::uint32_t pile_of(const Particles<Dim, Real>& particles, std::size_t slot, std::size_t block) const;
   std::size_t sort_columns(Particles<Dim, Real>& particles, std::size_t first_pile, std::span<const Block> block_of);
-  std::vector<std::int32_t> cluster_order(std::size_t first_pile);
+  std::unique_ptr<std::int32_t[]> cluster_order(std::size_t first_pile);
   NeighbourSettings settings_;
   Domain<Dim> domain_;
   ClusterOrder<Dim> order_;
