@@ -50,8 +50,9 @@ template <int Dim, class Real> void minimal_integrate(State<Dim, Real>& s) {
     s.neighbours.localise(p, cluster);
     store_rounded(s.parameters.eos.term(read(c + slot)), p[pressure_term][0] + slot);
   };
-  s.neighbours.moved(
-      std::sqrt(reduce_slots(s.neighbours.clusters(), 0.0, advance, [](double& m, double n) { m = std::max(m, n); })));
+  s.neighbours.moved(std::sqrt(reduce_slots(
+      s.neighbours.clusters(), 0.0, advance, [](double& m, double n) { m = std::max(m, n); },
+      block_size / cluster_size)));
 }
 
 /// One step; `own_integrator`: the one above instead of the solver's.

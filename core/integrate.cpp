@@ -275,7 +275,7 @@ template <bool leap_frog, bool plain, int Dim, class Real> Moved<Dim> move_all(S
         integrator.advance(first + k, all);
         preparation.of(first + k);
       },
-      [](Moved<Dim>& a, const Moved<Dim>& b) { a.join(b); });
+      [](Moved<Dim>& a, const Moved<Dim>& b) { a.join(b); }, block_size / cluster_size);
 }
 
 }  // namespace

@@ -32,14 +32,15 @@ template <class Scratch, class F> void for_each_piece_with(std::size_t count, co
 }
 
 /// Folds f(slot, accumulator&) over blocks of slots in parallel, then joins the blocks' accumulators in order with
-/// join(total&, block).
-template <class T, class F, class Join> T reduce_slots(std::size_t slots, T zero, F&& f, Join&& join) {
-  const std::size_t blocks = (slots + block_size - 1) / block_size;
+/// join(total&, block). For items larger than slots: shorter blocks, so that small runs have enough of them, too.
+template <class T, class F, class Join>
+T reduce_slots(std::size_t slots, T zero, F&& f, Join&& join, std::size_t block = block_size) {
+  const std::size_t blocks = (slots + block - 1) / block;
   std::vector<T> partial(blocks, zero);
   for_each_piece(blocks, [&](std::size_t b) {
     T sum = zero;
-    const std::size_t end = std::min(slots, (b + 1) * block_size);
-    for (std::size_t s = b * block_size; s < end; ++s) f(s, sum);
+    const std::size_t end = std::min(slots, (b + 1) * block);
+    for (std::size_t s = b * block; s < end; ++s) f(s, sum);
     partial[b] = sum;
   });
   T total = zero;
