@@ -31,15 +31,16 @@ template <int Dim, class Real> double largest_speed(const State<Dim, Real>& s) {
 /// Moments → correction and shift velocity, particle by particle; `fastest` (m/s) is the largest speed.
 template <int Dim, class Real> auto correction_finish(State<Dim, Real>& s, double fastest) {
   return PlainFinish{[&p = s.parameters, to = s.particles[correction], laplacian = s.particles[laplacian_correction][0],
-                      shift = s.particles[shift_velocity], shifting = s.features.shifting,
-                      coupling = s.particles[coupling_rate][0], delta = s.particles[compression][0],
-                      fastest](std::size_t slot, const auto& sums) {
+                      depth = s.particles[inner][0], shift = s.particles[shift_velocity],
+                      shifting = s.features.shifting, coupling = s.particles[coupling_rate][0],
+                      delta = s.particles[compression][0], fastest](std::size_t slot, const auto& sums) {
     const double volumes = 1 / p.eos.rest_density;
     SymTensor<Dim, double> m;
     for (int k = 0; k < m.size; ++k) m[k] = -volumes * sums[moment][k];
     const GradientCorrection<Dim> found(m);
     for (int k = 0; k < m.size; ++k) to[k][slot] = static_cast<Real>(found.inverse[k]);
     if (laplacian) laplacian[slot] = static_cast<Real>(found.laplacian);
+    if (depth) depth[slot] = static_cast<Real>(found.inner);
     if (!shifting) return;
     if constexpr (requires { sums[kernel_sum]; }) {
       double trace = 0;
@@ -93,7 +94,7 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
   if (f.stress || f.heat || f.xsph || f.monaghan_viscosity)
     pass(MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
          StressForce<Dim, Real>(f.stress && !f.pairwise_stress, rho0),
-         PairwiseStress<Dim, Real>(f.pairwise_stress, rho0),
+         PairwiseStress<Dim, Real>(f.pairwise_stress, !f.heat, rho0),
          HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0), diffusion, coupling,
          XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
   else if (coupling.on || diffusion.on)

@@ -238,7 +238,7 @@ FieldSet Features::columns() const {
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
   if (stress) s |= field_set(FieldList<Viscosity>{});
   if (stress && !pairwise_stress) s |= field_set(FieldList<Stress>{});
-  if (pairwise_stress) s |= field_set(FieldList<StrainRate, Vorticity, Thinning>{});
+  if (pairwise_stress) s |= field_set(FieldList<StrainRate, Vorticity, Thinning, Inner>{});
   if (xsph) s |= field_set(FieldList<XsphVelocity>{});
   if (internal_energy) s |= field_set(FieldList<InternalEnergy, InternalEnergyRate>{});
   if (density_filter) s |= field_set(FieldList<FilteredCompression>{});

@@ -85,6 +85,7 @@ MOLTEN_FIELD(EnergyShare, StepScalar, energy_share, "1", "share of the accelerat
 MOLTEN_FIELD(FilteredCompression, StepScalar, filtered_compression, "1", "compression after the density filter");
 MOLTEN_FIELD(Correction, StepTensor, correction, "1", "kernel-gradient correction L");
 MOLTEN_FIELD(LaplacianCorrection, StepScalar, laplacian_correction, "1", "factor that makes Laplacians whole");
+MOLTEN_FIELD(Inner, StepScalar, inner, "1", "1: deep in the fluid; 0: at its surface");
 MOLTEN_FIELD(ShiftVelocity, StepVector, shift_velocity, "m/s", "velocity of the particle less that of the fluid");
 MOLTEN_FIELD(CouplingRate, StepScalar, coupling_rate, "1/s", "what the places lack in compression, times a rate");
 MOLTEN_FIELD(XsphVelocity, StepVector, xsph_velocity, "m/s", "XSPH correction of the velocity, before its factor");
@@ -120,8 +121,8 @@ using AllFields =
               CompressionRate, TemperatureRate, XsphVelocity, Correction, LaplacianCorrection, ShiftVelocity,
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
-              RestTime, HeatRestTime, RestTemperature, Inlet, Held, StrainRate, Vorticity, Thinning, CouplingRate,
-              StiffAcceleration, StartVelocity, StageChange, EarlierChange>;
+              RestTime, HeatRestTime, RestTemperature, Inlet, Held, StrainRate, Vorticity, Thinning, Inner,
+              CouplingRate, StiffAcceleration, StartVelocity, StageChange, EarlierChange>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

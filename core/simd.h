@@ -145,7 +145,10 @@ template <class Real, int N> inline Lanes<Real, N> affine_root(Lanes<Real, N> a,
       e.v = (typename L::Native)_mm512_maskz_rsqrt14_ps(0xffff, (__m512)a.v);
     else
 #endif
+        if constexpr (N == 8)
       e.v = (typename L::Native)_mm256_rsqrt_ps((__m256)a.v);
+    else
+      e.v = (typename L::Native)_mm_rsqrt_ps((__m128)a.v);
     const L s = a * e;
     return L(c0) + s * (L(Real(1.5) * c1) - L(Real(0.5) * c1) * (s * e));
   } else {

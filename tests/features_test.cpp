@@ -110,7 +110,7 @@ TEST(Features, VaryingViscosityAddsItsPass) {
         s.numerics.gradient_correction = true;
         s.numerics.stress_form = StressForm::pairwise;
       },
-      {{"viscosity", "correction", "laplacian_correction", "strain_rate", "vorticity", "thinning"},
+      {{"viscosity", "correction", "laplacian_correction", "strain_rate", "vorticity", "thinning", "inner"},
        {},
        {"corrections", "viscosity"}});
   expect_adds([](Scene& s) { s.numerics.stress_form = StressForm::pairwise; }, {});  // nothing to act on
@@ -351,7 +351,8 @@ TEST(Features, ARefusalSaysWhereTheKeyOrItsTableStands) {
   const Place place{"bad.toml", 7, 3};
   EXPECT_EQ(line({{"numerics.shifting", place}}), "bad.toml:7:3: numerics.shifting: needs c");
   EXPECT_EQ(line({{"numerics", place}}), "bad.toml:7:3: numerics.shifting (chosen ");
-  EXPECT_EQ(line({{"numerics.shifting", {"--set numerics.shifting=true", 0, 0}}}), "--set numerics.shifting=true: numerics.s");
+  EXPECT_EQ(line({{"numerics.shifting", {"--set numerics.shifting=true", 0, 0}}}),
+            "--set numerics.shifting=true: numerics.s");
 }
 
 TEST(Features, TakesWhatMakesSense) {

@@ -93,6 +93,11 @@ TEST(SlowStudyOrder, YieldingChannelsAreWithinTheirReach) {
       EXPECT_LT(error_of("smd-channel", 32, "internal", {walls}, quantity), 0.01) << walls << quantity;
 }
 
+TEST(SlowStudyOrder, YieldingChannelsWithAKneeAreWithinTheirReach) {
+  EXPECT_LT(error_of("smd-channel", 32, "internal", {"walls=1", "jump_number=150", "numerics.precision=double"}), 0.01);
+  EXPECT_LT(error_of("bingham-channel", 16, "internal", {"walls=1"}), 0.015);
+}
+
 TEST(SlowStudyOrder, CavityIsWithinItsReach) {
   const Pair p = errors_of("cavity", 50, "internal");
   EXPECT_LT(p.coarse, 0.004);
