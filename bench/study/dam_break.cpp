@@ -24,12 +24,17 @@ Setup dam_break(const DamBreak& d) {
             "[numerics]\n" + std::string(impact_text) + wall_support_text(0.2);
   if (d.gate > 0) s.scene += gate_text(d.column[0], d.column[1] + 5 * d.spacing, d.spacing, d.gate);
   s.start = lattice(d.dimensions, {}, size, d.spacing);
+  perturb(s.start, d.dimensions, d.perturbation);
   for (const Triple& x : s.start.position) s.pressure.push_back(density * gravity * (size[up] - x[up]));
   return s;
 }
 
 Parameter gate_parameter(double speed) {
   return {"gate", speed, "speed at which a gate before the column rises, m/s; 0: none; none with dias and queiroz"};
+}
+
+Parameter perturbation_parameter() {
+  return {"perturbation", 0.2, "width of the random displacements at the start, spacings"};
 }
 
 double gate_of(const Request& request) {

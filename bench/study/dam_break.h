@@ -12,6 +12,7 @@ struct DamBreak {
   double spacing = 0;       // m
   double slip = 1;          // of the walls
   double gate = 0;          // speed at which a gate before the column rises, m/s; 0: none. In 2-D
+  double perturbation = 0;  // width of the random displacements at the start, spacings
 };
 
 /// At rest, with hydrostatic pressure.
@@ -21,6 +22,8 @@ Setup dam_break(const DamBreak& d);
 Parameter gate_parameter(double speed = 0);
 /// Its value; 0 with the presets whose integrators know no moving walls.
 double gate_of(const Request& request);
+/// The width of the displacements: water has no lattice. Rows of one arrive at a wall together, and its pressure rings.
+Parameter perturbation_parameter();
 /// A gate whose face towards the column is at `left` (m), from the floor to `top` (m), in 2-D.
 std::string gate_text(double left, double top, double spacing, double speed);
 

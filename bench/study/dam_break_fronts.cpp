@@ -38,8 +38,8 @@ void run_cruchaga(const Request& r, Report& report, const Series& experiment, do
   report.expect("front_mean", reach);
   for (const double t : experiment.at) report.expect(fmt::format("front_{}s", t), no_reach);
   const double width = r["width"];
-  const DamBreak d{2,         {width, r["height"], 0}, {0.42, 0.44, 0}, width / static_cast<double>(r.size), r["slip"],
-                   gate_of(r)};
+  const DamBreak d{2,          {width, r["height"], 0}, {0.42, 0.44, 0}, width / static_cast<double>(r.size), r["slip"],
+                   gate_of(r), r["perturbation"]};
   const Series front = record(r, report, d, experiment.at.back()).front;
   report.judge("front_mean", mean_deviation(front, experiment));
   for (std::size_t k = 0; k < experiment.at.size(); ++k)
@@ -61,7 +61,11 @@ Case cruchaga(const std::string& name, double height, void (*run)(const Request&
           "particles across the column",
           36,
           6,
-          {{"width", 0.114, "of the column, m"}, {"height", height, "of the column, m"}, slip, gate_parameter()},
+          {{"width", 0.114, "of the column, m"},
+           {"height", height, "of the column, m"},
+           slip,
+           gate_parameter(),
+           perturbation_parameter()},
           run};
 }
 
@@ -75,7 +79,7 @@ void run_lobovsky_front(const Request& r, Report& report) {
     report.expect("wall_arrival", 0.05);
   }
   const DamBreak d{2,         {0.6, height, 0}, {wall, 1.5 * height, 0}, height / static_cast<double>(r.size),
-                   r["slip"], gate_of(r)};
+                   r["slip"], gate_of(r),       r["perturbation"]};
   const Series front = record(r, report, d, 2 * unit).front;
   if (!experiment) return;
   // Z = 1 + (x − 0.6 m)/H
@@ -95,8 +99,9 @@ void run_martin_moyce(const Request& r, Report& report) {
   const auto height = reference("dambreak/martin_moyce1952_table6_height_n2_2_a2.25in.csv", "tau", "H");
   if (front) expect_series(report, "front", no_reach, 0.04);
   if (height) expect_series(report, "height", no_reach, 0.04);
-  const DamBreak d{2,         {a, ratio * a, 0}, {16 * a, 1.2 * ratio * a, 0}, a / static_cast<double>(r.size),
-                   r["slip"], gate_of(r)};
+  const DamBreak d{
+      2,          {a, ratio * a, 0}, {16 * a, 1.2 * ratio * a, 0}, a / static_cast<double>(r.size), r["slip"],
+      gate_of(r), r["perturbation"]};
   const double end = r["end_time"];
   const Record run = record(r, report, d, end * unit);
   if (front) judge_series(report, "front", run.front.scaled(1 / unit, 1 / a), front->between(0, end));
@@ -116,7 +121,8 @@ void run_koshizuka(const Request& r, Report& report) {
                    {4 * width, 2 * ratio * width, 0},
                    width / static_cast<double>(r.size),
                    r["slip"],
-                   gate_of(r)};
+                   gate_of(r),
+                   r["perturbation"]};
   const Series front = record(r, report, d, 0.75 * unit).front;
   if (!experiment) return;
   // As far as 3.9 widths: there is the wall.
@@ -136,7 +142,7 @@ Case lobovsky_front() {
           "particles a height of the column",
           120,
           8,
-          {{"height", 0.6, "of the column, m"}, slip, gate_parameter(4.53)},
+          {{"height", 0.6, "of the column, m"}, slip, gate_parameter(4.53), perturbation_parameter()},
           run_lobovsky_front};
 }
 
@@ -150,7 +156,8 @@ Case martin_moyce() {
            {"aspect_ratio", 2, "height over width"},
            {"end_time", 3.4, "√(width/2g)"},
            slip,
-           gate_parameter()},
+           gate_parameter(),
+           perturbation_parameter()},
           run_martin_moyce};
 }
 
@@ -161,7 +168,11 @@ Case koshizuka() {
           "particles across the column",
           40,
           6,
-          {{"width", 1, "of the column, m"}, {"aspect_ratio", 2, "height over width"}, slip, gate_parameter()},
+          {{"width", 1, "of the column, m"},
+           {"aspect_ratio", 2, "height over width"},
+           slip,
+           gate_parameter(),
+           perturbation_parameter()},
           run_koshizuka};
 }
 
