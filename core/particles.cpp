@@ -1,39 +1,12 @@
 #include "core/particles.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <cstring>
-#include <new>
 #include <string>
 
 #include "core/particle_pass.h"
 
 namespace molten {
-
-void Buffer::resize(std::size_t bytes, std::size_t kept) {
-  if (bytes <= capacity_) return;
-  constexpr std::size_t page = std::size_t{1} << 21;
-  const std::size_t alignment = bytes >= page ? page : 64, granule = bytes >= page ? page / 32 : 64;
-  const std::size_t rounded = (bytes + granule - 1) / granule * granule;
-  std::unique_ptr<void, Free> old = std::move(data_);
-  const std::size_t of_old = std::min(kept, std::exchange(capacity_, 0));
-  if (kept == 0) old.reset();
-  void* memory = nullptr;
-  if (posix_memalign(&memory, alignment, rounded) != 0) throw std::bad_alloc();
-  data_.reset(memory);
-  if (alignment == page) madvise(data_.get(), rounded, MADV_HUGEPAGE);
-  for_each_piece((rounded + page - 1) / page, [&](std::size_t k) {
-    std::memset(static_cast<char*>(data_.get()) + k * page, 0, std::min(page, rounded - k * page));
-  });
-  if (of_old > 0) std::memcpy(data_.get(), old.get(), of_old);
-  capacity_ = rounded;
-}
-
-void Buffer::extend(std::size_t from, std::size_t to) {
-  if (to > capacity_) resize(std::max(to, capacity_ + capacity_ / 2), from);
-  std::memset(static_cast<char*>(data()) + from, 0, to - from);
-}
 
 template <int Dim, class Real> Particles<Dim, Real>::Particles(FieldSet active) : active_(active) {
   active_ |= field_set(FieldList<Id, LocalPosition>{});

@@ -5,12 +5,11 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
 #include <span>
 #include <utility>
 
 #include "core/archive.h"
+#include "core/buffer.h"
 #include "core/fields.h"
 
 namespace molten {
@@ -25,24 +24,6 @@ template <class... F> FieldSet field_set(FieldList<F...>) {
   (s.set(field_index<F>), ...);
   return s;
 }
-
-/// Memory on cache-line (large: huge-page) boundaries, zero at first.
-class Buffer {
- public:
-  /// When it has to grow, all but the first `kept` bytes are lost.
-  void resize(std::size_t bytes, std::size_t kept = 0);
-  void extend(std::size_t from, std::size_t to);  // bytes; keeps the first `from`, the rest becomes zero
-  void* data() const { return data_.get(); }
-  std::size_t capacity() const { return capacity_; }
-  void swap(Buffer& other) noexcept { std::swap(data_, other.data_), std::swap(capacity_, other.capacity_); }
-
- private:
-  struct Free {
-    void operator()(void* p) const { std::free(p); }
-  };
-  std::unique_ptr<void, Free> data_;
-  std::size_t capacity_ = 0;
-};
 
 /// One array a component. column[k][slot] is component k; column.of(slot) the whole value.
 template <class F, int Dim, class T> struct Column {
