@@ -96,7 +96,9 @@ template <class Real> void add_bunny() {
 
 template <class Real> void add_all() {
   constexpr long long k = 1000, M = 1000000;
+  add_rates<3, Real>("rates/wcsph/3d/100k", 100 * k, 1.3);
   add_rates<3, Real>("rates/wcsph/3d/1M", M, 1.3);
+  add_rates<3, Real>("rates/wcsph/3d/4M", 4 * M, 1.3);
   add_steps<3, Real>("step/wcsph/3d/100k", 100 * k, 1.3, 2000);
   add_steps<3, Real>("step/wcsph/3d/1M", M, 1.3, 500);
   add_steps<3, Real>("step/wcsph/3d/4M", 4 * M, 1.3, 120);

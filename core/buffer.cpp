@@ -8,7 +8,7 @@
 #include <cstring>
 #include <new>
 
-#include "core/particle_pass.h"
+#include "core/pieces.h"
 
 namespace molten {
 namespace {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/pieces.h"
+
 namespace molten {
 
 inline constexpr std::size_t block_size = 1024;  // slots; fixed, never the thread count's
@@ -13,22 +15,6 @@ inline constexpr std::size_t block_size = 1024;  // slots; fixed, never the thre
 template <class F> void for_each_slot(std::size_t slots, F&& f) {
 #pragma omp parallel for schedule(static)
   for (std::size_t s = 0; s < slots; ++s) f(s);
-}
-
-/// f(k) for k in [0, count), in parallel, handed out one at a time: for pieces of unequal work.
-template <class F> void for_each_piece(std::size_t count, F&& f) {
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t k = 0; k < count; ++k) f(k);
-}
-
-/// The same with scratch of its own for each thread: f(k, scratch&). What f gives must not depend on what was there.
-template <class Scratch, class F> void for_each_piece_with(std::size_t count, const Scratch& scratch, F&& f) {
-#pragma omp parallel
-  {
-    Scratch own = scratch;
-#pragma omp for schedule(dynamic, 1)
-    for (std::size_t k = 0; k < count; ++k) f(k, own);
-  }
 }
 
 /// Folds f(slot, accumulator&) over blocks of slots in parallel, then joins the blocks' accumulators in order with
