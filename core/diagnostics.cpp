@@ -215,8 +215,8 @@ template <int Dim, class Real> std::string find_non_finite(const State<Dim, Real
     if (field == temperature.name || field == temperature_rate.name)
       return "heat conduction ran away; lower numerics.courant.conduction or numerics.fixed_dt";
     return std::string("the time step was too large for the ") + name_of(s.clock.limit) +
-           " limit or particles met at high speed; lower numerics.courant, raise numerics.sound_speed or add "
-           "numerics.xsph";
+           " limit or particles met at high speed; lower numerics." + (s.parameters.fixed_dt ? "fixed_dt" : "courant") +
+           ", raise numerics.sound_speed or add numerics.xsph";
   };
   std::string line;
   for (const std::uint32_t slot : slots_by_id(p)) {

@@ -1,17 +1,21 @@
 // The program: reads the command line and calls what it names. Errors are one line and an exit code (core/error.h).
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <CLI/CLI.hpp>
 #include <new>
 
 #include "io/program/commands.h"
 #include "io/program/run.h"
+#include "io/program/say.h"
 #include "io/scene/scene_file.h"
 #include "version.h"
 
 namespace {
 
 using molten::ExitCode;
+
+constexpr int most_threads = 4096;
 
 /// One subcommand: its options and what it does.
 struct Commands {
@@ -29,7 +33,7 @@ void add_run(CLI::App& app, Commands& c) {
   run->add_option("scene", c.scene, "Scene file (TOML; docs/scenes.md)")->required();
   run->add_option("-o,--output", c.run.folder, "Folder of the run (default: runs/<name of the scene>)");
   run->add_option("--threads", c.run.threads, "Threads (default: OMP_NUM_THREADS or all cores)")
-      ->check(CLI::Range(1, 4096));
+      ->check(CLI::Range(1, most_threads));
   run->add_option("--set", c.overrides, "Override a key of the scene; again for each more")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -46,7 +50,7 @@ void add_resume(CLI::App& app, Commands& c) {
   CLI::App* resume = app.add_subcommand(
       "resume", "Go on from a run's newest checkpoint\n  molten resume runs/bunny --set run.end_time=0.8");
   resume->add_option("run", c.resume.folder, "Folder of the run")->required();
-  resume->add_option("--threads", c.resume.threads, "Threads")->check(CLI::Range(1, 4096));
+  resume->add_option("--threads", c.resume.threads, "Threads")->check(CLI::Range(1, most_threads));
   resume->add_option("--set", c.resume.overrides, "Override a key of [run] or [output]; again for each more")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -104,15 +108,17 @@ void add_compare(CLI::App& app, Commands& c) {
 
 int guarded(const std::function<ExitCode()>& f) {
   try {
-    return static_cast<int>(f());
+    const ExitCode code = f();
+    molten::finish_output();
+    return static_cast<int>(code);
   } catch (const molten::Error& e) {
-    fmt::print(stderr, "molten: {}\n", e.what());
+    molten::say("molten: {}\n", e.what());
     return static_cast<int>(e.code());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "molten: out of memory; ask for fewer particles\n");
+    molten::say("molten: out of memory; ask for fewer particles\n");
     return static_cast<int>(ExitCode::usage);
   } catch (const std::exception& e) {
-    fmt::print(stderr, "molten: {}\n", e.what());
+    molten::say("molten: {}\n", e.what());
     return static_cast<int>(ExitCode::files);
   }
 }
@@ -124,9 +130,19 @@ std::string complaint(const CLI::App* app, const CLI::Error& e) {
                      subcommands.empty() ? "" : subcommands.front()->get_name());
 }
 
+/// The runtime creates as many threads as the environment asks for, until it breaks.
+void require_possible_threads() {
+  if (omp_get_max_threads() > most_threads)
+    throw molten::Error(ExitCode::usage,
+                        fmt::format("OMP_NUM_THREADS: {} threads are more than {}; set no more than the "
+                                    "machine has cores",
+                                    omp_get_max_threads(), most_threads));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  molten::open_standard_streams();
   CLI::App app{"molten: melting bodies, lava and dam breaks with smoothed particle hydrodynamics"};
   app.set_version_flag("--version", std::string("molten ") + MOLTEN_VERSION + " (" + MOLTEN_COMMIT + ")");
   app.require_subcommand(1);
@@ -144,7 +160,11 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    if (app.exit(e) != 0) return static_cast<int>(ExitCode::usage);
+    return guarded([] { return ExitCode::done; });
   }
-  return guarded(commands.chosen);
+  return guarded([&] {
+    require_possible_threads();
+    return commands.chosen();
+  });
 }

@@ -18,7 +18,8 @@ std::size_t count_other_than(const Buffer& b, std::size_t from, std::size_t to, 
 }
 
 TEST(BufferOfColumns, IsZeroAndAligned) {
-  for (const std::size_t bytes : {std::size_t{100}, 64 * kib - 1, 64 * kib, 400 * kib, 2 * mib - 1, 2 * mib, 3 * mib, 4 * mib - 1}) {
+  for (const std::size_t bytes :
+       {std::size_t{100}, 64 * kib - 1, 64 * kib, 400 * kib, 2 * mib - 1, 2 * mib, 3 * mib, 4 * mib - 1}) {
     Buffer b;
     b.resize(bytes);
     EXPECT_GE(b.capacity(), bytes);

@@ -70,6 +70,7 @@ class Program {
     dup2(in, 0), dup2(out, 1), dup2(err, 2);
     // Small runs: one thread unless a test says otherwise, so that a busy machine does not slow them.
     setenv("OMP_NUM_THREADS", "1", 1);
+    ::signal(SIGHUP, SIG_DFL);  // whoever runs the tests with nohup
     if (!working.empty() && chdir(working.c_str()) != 0) _exit(126);
     std::vector<char*> argv{const_cast<char*>(file)};
     for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));

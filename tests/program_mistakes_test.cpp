@@ -160,5 +160,40 @@ TEST_F(BadPlace, NothingToLookAt) {
   expect_refused(molten_program({"info", file("a.obj", "x")}), 3, {"a.obj"});
 }
 
+// ---- streams and environment ---------------------------------------------------------------------------------------
+
+/// The program in a shell's command line: $M stands for it.
+Outcome in_shell(const std::string& line) {
+  return Program({"-c", fmt::format("M='{}'; {}", MOLTEN_PROGRAM, line)}, {}, "/bin/sh").wait();
+}
+
+TEST_F(BadPlace, ARunOutlivesWhoeverListens) {
+  const std::string run = fmt::format("$M run '{}' -o '{}' --overwrite ", scene().string(), out.string());
+  for (const char* streams : {"2>/dev/full", "2>&- >&- <&-", "2>&1 | true"}) {
+    fs::remove_all(out);
+    EXPECT_EQ(in_shell(run + streams).code, 0) << streams;
+    for (int k = 0; k < 2000 && !fs::exists(out / "summary.json"); ++k)  // a pipe's end does not wait for its beginning
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_TRUE(contains(read_bytes(out / "summary.json"), "\"done\"")) << streams;
+    EXPECT_TRUE(contains(read_bytes(out / "series.csv"), "kinetic")) << "a stream's words went into a file";
+  }
+}
+
+TEST_F(BadPlace, OutputThatIsNotTaken) {
+  EXPECT_EQ(in_shell(fmt::format("$M check '{}' >/dev/full", scene().string())).code, 5);
+  EXPECT_EQ(in_shell("$M --help >/dev/full").code, 5);
+  EXPECT_EQ(in_shell("$M --help >/dev/null").code, 0);
+}
+
+TEST_F(BadPlace, MoreThreadsThanThereCanBe) {
+  expect_refused(in_shell(fmt::format("OMP_NUM_THREADS=99999 $M check '{}'", scene().string())), 2,
+                 {"OMP_NUM_THREADS", "99999", "4096"});
+}
+
+TEST_F(BadPlace, NothingToResume) {
+  const std::string none = (folder.path() / "none").string();
+  expect_refused(molten_program({"resume", none}), 6, {none, "no such folder"});
+}
+
 }  // namespace
 }  // namespace molten

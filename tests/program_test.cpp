@@ -239,6 +239,14 @@ TEST_F(Commands, CompareTellsRunsApart) {
   EXPECT_FALSE(contains(differ.out, "velocity       largest 0,")) << differ.out;
 }
 
+TEST_F(Commands, TheSameRunWritesTheSameFrames) {
+  ASSERT_EQ(run(block_scene).code, 0);
+  const std::string frame = read_bytes(out / "frames/000001.hdf");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 knows seconds
+  ASSERT_EQ(run(block_scene, {"--overwrite"}).code, 0);
+  EXPECT_EQ(read_bytes(out / "frames/000001.hdf"), frame);
+}
+
 TEST_F(Commands, OneProcessAtATimeRunsInAFolder) {
   Program program({"run", scene().string(), "-o", out.string(), "--set", "run.end_time=1000.0"});
   ASSERT_TRUE(program.waits_for([&] { return fs::exists(out / "frames/000001.hdf"); }));

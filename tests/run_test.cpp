@@ -233,8 +233,9 @@ TEST_P(Signal, StopsCleanlyAndTheResumedRunIsTheUninterruptedOne) {
   expect_same_run(bench.run("whole"), bench.run("stopped"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Either, Signal, ::testing::Values(SIGTERM, SIGINT),
-                         [](const auto& info) { return info.param == SIGTERM ? "Term" : "Int"; });
+INSTANTIATE_TEST_SUITE_P(Either, Signal, ::testing::Values(SIGTERM, SIGINT, SIGHUP), [](const auto& info) {
+  return info.param == SIGTERM ? "Term" : info.param == SIGINT ? "Int" : "Hup";
+});
 
 // ---- bad checkpoints and changed scenes -----------------------------------------------------------------------------
 

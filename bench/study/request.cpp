@@ -42,6 +42,8 @@ void apply(const Case& chosen, Request& request, const std::string& setting) {
     request.given[key] = number(key, value);
     if (key == "dimensions" && request.given[key] != 2 && request.given[key] != 3)
       refuse(fmt::format("--set {}: a case runs in 2 or 3 dimensions", setting));
+    if ((key == "end_time" || key == step_factor) && request.given[key] <= 0)
+      refuse(fmt::format("--set {}: must be above 0", setting));
   } else {
     refuse(
         fmt::format("--set {}: {} has no such parameter; it has {}{}{}; keys of the scene go with their table, such as "

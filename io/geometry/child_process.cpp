@@ -39,7 +39,7 @@ void lower_limit(int resource, rlim_t value) {
 }
 
 void confine(const ChildLimits& limits, std::size_t in_use) {
-  for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGABRT, SIGSEGV, SIGFPE, SIGBUS, SIGILL})
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGABRT, SIGSEGV, SIGFPE, SIGBUS, SIGILL})
     std::signal(number, SIG_DFL);
   lower_limit(RLIMIT_CORE, 0);
   lower_limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds));

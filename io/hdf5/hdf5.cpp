@@ -168,6 +168,7 @@ void Hdf5File::write(const std::string& name, const Hdf5Layout& layout, NumberTy
   const Hdf5Id space = check(space_of(layout.dimensions), action);
   const Hdf5Id links = property_list(H5P_LINK_CREATE), creation = creation_of(layout);
   H5Pset_create_intermediate_group(links, 1);
+  H5Pset_obj_track_times(creation, false);  // the same run writes the same bytes
   const Hdf5Id set = check(
       {H5Dcreate2(id_, name.c_str(), native(layout.type), space, links, creation, H5P_DEFAULT), H5Dclose}, action);
   if (layout.count() > 0) check(H5Dwrite(set, native(in_memory), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), action);

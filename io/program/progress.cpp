@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/program/say.h"
+
 namespace molten {
 
 namespace {
@@ -43,20 +45,19 @@ void Progress::show(const Clock& clock, const Diagnostics& now) {
   const double drift = initial_energy_ != 0 ? 100 * (energy - initial_energy_) / std::abs(initial_energy_) : 0;
   std::string line = fmt::format(
       "{:5.1f} %  t {:.4g} of {:.4g} s  step {}  dt {:.3g} s ({})  {} particles{}  energy {:+.2f} %",
-      all > 0 ? std::min(100.0, 100 * done / all) : 100, clock.time, end_time_, clock.step, clock.dt,
+      end_time_ > 0 ? std::min(100.0, 100 * clock.time / end_time_) : 100, clock.time, end_time_, clock.step, clock.dt,
       name_of(clock.limit), now.particles,
       now.asleep > 0 ? fmt::format(" ({} moving, {} asleep)", now.particles - now.asleep, now.asleep) : "", drift);
   if (rate > 0) line += fmt::format("  {:.2f} M particle-steps/s", rate / 1e6);
   if (done > 0) line += fmt::format("  {} left", in_words(left));
-  fmt::print(stderr, "{}{}{}", terminal_ ? "\r\x1b[K" : "", line, terminal_ ? "" : "\n");
-  std::fflush(stderr);
+  say("{}{}{}", terminal_ ? "\r\x1b[K" : "", line, terminal_ ? "" : "\n");
   shown_ = true;
   last_ = std::chrono::steady_clock::now();
   last_step_ = clock.step;
 }
 
 void Progress::finish() {
-  if (terminal_ && shown_) fmt::print(stderr, "\n");
+  if (terminal_ && shown_) say("\n");
 }
 
 void Stages::begin(const std::string& at) {
@@ -69,14 +70,13 @@ void Stages::tick() {
 }
 
 void Stages::show() {
-  fmt::print(stderr, "{}{} ({:.0f} s){}", terminal_ ? "\r\x1b[K" : "", at_, since(begun_), terminal_ ? "" : "\n");
-  std::fflush(stderr);
+  say("{}{} ({:.0f} s){}", terminal_ ? "\r\x1b[K" : "", at_, since(begun_), terminal_ ? "" : "\n");
   shown_ = true;
   last_ = std::chrono::steady_clock::now();
 }
 
 void Stages::finish() {
-  if (terminal_ && shown_) fmt::print(stderr, "\r\x1b[K");
+  if (terminal_ && shown_) say("\r\x1b[K");
   shown_ = false;
 }
 

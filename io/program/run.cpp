@@ -20,6 +20,7 @@
 #include "io/program/progress.h"
 #include "io/program/report.h"
 #include "io/program/run_lock.h"
+#include "io/program/say.h"
 #include "io/program/series.h"
 #include "io/program/signals.h"
 #include "io/scene/scene_file.h"
@@ -207,12 +208,11 @@ template <int Dim, class Real> class Runner {
     if (code == ExitCode::done && state_.clock.step > last_row_step_) write_row(diagnose(state_));
     if (code == ExitCode::done && scene_.output.frames_per_second > 0 && state_.clock.time > last_frame_)
       write_snapshot();
-    if (state_.neighbours.dropped() > 0)
-      fmt::print(stderr, "note: {} particles have left the domain\n", state_.neighbours.dropped());
+    if (state_.neighbours.dropped() > 0) say("note: {} particles have left the domain\n", state_.neighbours.dropped());
     summarise(code == ExitCode::done ? "done" : "interrupted");
     if (code == ExitCode::interrupted)
-      fmt::print(stderr, "stopped at t = {:.6g} s, step {}; go on with: molten resume {}\n", state_.clock.time,
-                 state_.clock.step, folder_.string());
+      say("stopped at t = {:.6g} s, step {}; go on with: molten resume {}\n", state_.clock.time, state_.clock.step,
+          folder_.string());
   }
 
   void summarise(const std::string& status) {
@@ -272,7 +272,7 @@ Runner<Dim, Real> prepare_run(const Scene& scene, const std::filesystem::path& f
   Surroundings<Dim> around = build_surroundings(scene, start, parameters, walls);
   require_no_overlap(scene, start, walls, around.contact);
   require_open_vents(scene, start, walls, around.contact);
-  for (const std::string& w : warnings_of(scene, start, walls)) fmt::print(stderr, "note: {}\n", w);
+  for (const std::string& w : warnings_of(scene, start, walls)) say("note: {}\n", w);
   return Runner<Dim, Real>(scene, folder, make_state<Dim, Real>(features, parameters, std::move(around), start), print);
 }
 
@@ -329,6 +329,7 @@ void set_threads(int threads) {
 }  // namespace
 
 ExitCode run_scene(const Scene& scene, const RunOptions& options) {
+  outlive_readers();
   const Features features = features_of(scene);
   require_fields(features, scene.output.fields);
   const Start start = fill_bodies(scene, features);  // meshes are read in child processes: before any threads
@@ -343,9 +344,9 @@ ExitCode run_scene(const Scene& scene, const RunOptions& options) {
     write_obj(options.folder / "walls.obj", picture_of_walls(scene, start));
     write_bodies(options.folder / "bodies", pictures_of_bodies(scene, start));
     write_manifest(options.folder, scene, features, print);
-    fmt::print(stderr, "{}: {} particles, spacing {:.4g} m, {}-D, {} precision, {} threads, into {}\n",
-               scene.title.empty() ? scene.file : scene.title, runner.particles(), start.spacing, Dim,
-               sizeof(Real) == 4 ? "single" : "double", omp_get_max_threads(), options.folder.string());
+    say("{}: {} particles, spacing {:.4g} m, {}-D, {} precision, {} threads, into {}\n",
+        scene.title.empty() ? scene.file : scene.title, runner.particles(), start.spacing, Dim,
+        sizeof(Real) == 4 ? "single" : "double", omp_get_max_threads(), options.folder.string());
     catch_stop_signals();
     return runner.run();
   });
@@ -364,19 +365,26 @@ Usable newest_usable(const std::filesystem::path& folder) {
   for (const auto& file : list_checkpoints(folder)) {
     try {
       const CheckpointHead head = read_checkpoint_head(file);
-      for (const std::string& defect : defects) fmt::print(stderr, "warning: {}; taking the one before\n", defect);
+      for (const std::string& defect : defects) say("warning: {}; taking the one before\n", defect);
       return {file, head};
     } catch (const Error& e) {
       defects.push_back(e.what());
     }
   }
   throw Error(ExitCode::checkpoint,
-              defects.empty() ? folder.string() + ": holds no checkpoint; start it with `molten run`" : defects[0]);
+              defects.empty() ? folder.string() + ": holds no checkpoint; start it again with `molten run SCENE -o " +
+                                    folder.string() + " --overwrite`"
+                              : defects[0]);
 }
 
 }  // namespace
 
 ExitCode resume_run(const ResumeOptions& options) {
+  outlive_readers();
+  if (!std::filesystem::is_directory(options.folder))
+    throw Error(ExitCode::checkpoint, options.folder.string() +
+                                          ": no such folder; start a run with `molten run SCENE -o " +
+                                          options.folder.string() + "`");
   const RunLock lock(options.folder);
   const Usable checkpoint = newest_usable(options.folder);
   const std::filesystem::path copy = options.folder / "scene.toml";
@@ -398,13 +406,15 @@ ExitCode resume_run(const ResumeOptions& options) {
     auto runner = prepare_run<Dim, Real>(scene, options.folder, features, start, print);
     runner.restore(checkpoint.file);
     write_text(copy, scene.text);
-    fmt::print(stderr, "resuming {} from t = {:.6g} s, step {}\n", options.folder.string(), checkpoint.head.time,
-               checkpoint.head.step);
+    say("resuming {} from t = {:.6g} s, step {}\n", options.folder.string(), checkpoint.head.time,
+        checkpoint.head.step);
     catch_stop_signals();
     if (checkpoint.head.time >= scene.run.end_time)
-      fmt::print(stderr,
-                 "note: that is past run.end_time = {:.6g} s; to go on: molten resume {} --set run.end_time=...\n",
-                 scene.run.end_time, options.folder.string());
+      say("note: that is past run.end_time = {:.6g} s; to go on: molten resume {} --set run.end_time=...\n",
+          scene.run.end_time, options.folder.string());
+    if (scene.run.max_steps && checkpoint.head.step >= *scene.run.max_steps)
+      say("note: run.max_steps = {} are done; to go on: molten resume {} --set run.max_steps=...\n",
+          *scene.run.max_steps, options.folder.string());
     return runner.run();
   });
 }

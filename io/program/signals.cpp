@@ -22,7 +22,13 @@ void catch_stop_signals() {
   action.sa_flags = SA_RESTART | SA_NODEFER;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction before {};
+  sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup wants it to go on
+  std::signal(SIGPIPE, SIG_IGN);                                          // nobody reads what it says any more
 }
+
+void outlive_readers() { std::signal(SIGPIPE, SIG_IGN); }
 
 bool stop_requested() { return requested != 0; }
 
