@@ -189,7 +189,7 @@ Case bingham_channel() {
       "particles a half gap",
       32,
       4,
-      joined({{"regularisation", 200, "m of Papanastasiou"}}, steady_parameters),
+      joined({{"regularisation", 400, "m of Papanastasiou"}}, steady_parameters),
       run_bingham};
 }
 
