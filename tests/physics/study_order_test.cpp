@@ -60,7 +60,7 @@ TEST(StudyOrder, YieldingChannelConvergesFasterThanInFirstOrder) {
   EXPECT_LT(error_of("smd-channel", 16, "internal"), 0.01);  // periodic
 }
 
-TEST(StudyOrder, CouplingKeepsACavitysWallsTight) {
+TEST(SlowStudyOrder, CouplingKeepsACavitysWallsTight) {
   const double leaking = error_of("cavity", 25, "internal", {"numerics.shifting={coupling=0}"});
   EXPECT_LT(error_of("cavity", 25, "internal"), 0.75 * leaking);
 }
