@@ -106,7 +106,7 @@ template <int Dim, class Real> void add_passes(const std::string& size, long lon
   const Continuity continuity;
   const PressureForce pressure;
   const ArtificialViscosity<Real> artificial(0.1, c, h, rho0);
-  const StressForce<Dim, Real> stress(true, rho0);
+  const StressForce<Dim, Real> stress(true, rho0, h * h);
   const HeatConduction<Real> heat(1e-5, rho0);
   const LaminarViscosity<Real> laminar(10, rho0);
   const XsphTerm<Real> xsph(true, rho0);

@@ -137,7 +137,9 @@ template <class Extra> Step forces_and(Extra extra) {
 std::vector<Comparison> comparisons() {
   const Step heat = forces_and(
       [](const S& s) { return HeatConduction<float>(s.parameters.diffusivity, s.parameters.eos.rest_density); });
-  const Step stress = forces_and([](const S& s) { return StressForce<3, float>(true, s.parameters.eos.rest_density); });
+  const Step stress = forces_and([](const S& s) {
+    return StressForce<3, float>(true, s.parameters.eos.rest_density, s.parameters.kernel_second_moment);
+  });
   const Step laminar = forces_and(
       [](const S& s) { return LaminarViscosity<float>(s.parameters.viscosity, s.parameters.eos.rest_density); });
   const Step xsph = forces_and([](const S& s) { return XsphTerm<float>(true, s.parameters.eos.rest_density); });

@@ -19,7 +19,7 @@ template <int Dim, class Real, class F> decltype(auto) with_rate_terms(const Sta
   return f(Continuity{}, PressureForce{},
            ArtificialViscosity<Real>(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, rho0),
            LaminarViscosity<Real>(s.features.laminar ? p.viscosity : 0, rho0),
-           StressForce<Dim, Real>(s.features.stress, rho0),
+           StressForce<Dim, Real>(s.features.stress, rho0, p.kernel_second_moment),
            HeatConduction<Real>(s.features.heat ? p.diffusivity : 0, rho0), XsphTerm<Real>(s.features.xsph, rho0));
 }
 

@@ -93,7 +93,7 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
   // Newtonian flows in a space of their own, between walls and with a surface; and all that a scene may have.
   if (f.stress || f.heat || f.xsph || f.monaghan_viscosity)
     pass(MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
-         StressForce<Dim, Real>(f.stress && !f.pairwise_stress, rho0),
+         StressForce<Dim, Real>(f.stress && !f.pairwise_stress, rho0, p.kernel_second_moment),
          PairwiseStress<Dim, Real>(f.pairwise_stress, !f.heat, rho0),
          HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0), diffusion, coupling,
          XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));

@@ -18,14 +18,9 @@ std::size_t Levels::bytes() const {
 
 namespace {
 
-/// How fast the viscous forces damp the shortest waves, times the viscous limit, at most: 0.9 on lattices, 1.2 among
-/// particles in disorder (tests/levels_test.cpp).
-constexpr double fastest_damping = 1.25;
-
-/// The least s that is stable: s² + s at least the damping over the step, so many times as long as the viscous limit.
-int stages_for(double limits) {
-  return static_cast<int>(std::ceil((std::sqrt(1 + 4 * fastest_damping * limits) - 1) / 2));
-}
+/// The least s that is stable: s² + s at least λ over the step, which is at most how many times as long as the viscous
+/// limit the step is (tests/levels_test.cpp).
+int stages_for(double limits) { return static_cast<int>(std::ceil((std::sqrt(1 + 4 * limits) - 1) / 2)); }
 
 template <int Dim, class Real> void find_levels(State<Dim, Real>& s) {
   const Particles<Dim, Real>& p = s.particles;
@@ -99,8 +94,8 @@ template <int Dim, class Real> class Stages {
         count_(stages_for(limits)),
         time_(kick_time(s)),
         weight_(2 / (count_ * (count_ + 1.0))),
-        held_(static_cast<Real>(1 / (1 + fastest_damping * limits))),
-        force_(StressForce<Dim, Real>(true, s.parameters.eos.rest_density)) {}
+        held_(static_cast<Real>(1 / (1 + limits))),
+        force_(StressForce<Dim, Real>(true, s.parameters.eos.rest_density, s.parameters.kernel_second_moment)) {}
 
   void take() {
     begin();

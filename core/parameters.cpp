@@ -170,6 +170,20 @@ RestBounds rest_bounds(const Scene& scene, const Parameters<Dim>& p, const Tempe
   return r;
 }
 
+/// ∫ W r² dV (m²), by Simpson's rule.
+template <int Dim> double second_moment(const Parameters<Dim>& p) {
+  constexpr int parts = 1000;
+  const double shell = Dim == 2 ? 2 * std::numbers::pi : 4 * std::numbers::pi, width = p.support_radius / parts;
+  return with_kernel<double>(p.kernel, Dim, p.smoothing_length, 1.0, [&](const auto& kernel) {
+    double sum = 0;
+    for (int n = 1; n < parts; ++n) {  // nothing at either end
+      const double r = n * width;
+      sum += (n % 2 ? 4 : 2) * shell * std::pow(r, Dim + 1) * kernel(Lanes<double, 1>(r)).w.v;
+    }
+    return sum * width / 3;
+  });
+}
+
 /// The concentration (density_coupling.h) of a square lattice at the rest density.
 template <int Dim> double lattice_concentration(const Parameters<Dim>& p) {
   return with_kernel<double>(p.kernel, Dim, p.smoothing_length, p.particle_mass, [&](const auto& kernel) {
@@ -219,6 +233,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   if (scene.fluid.hydrostatic) p.surface_potential = surface_potential(scene, start);
   const Rheology& r = scene.fluid.rheology;
   p.viscosity = r.viscosity;
+  p.kernel_second_moment = second_moment(p);
   p.rheology = r;
   if (r.model == Rheology::Model::smd) p.smd = Smd(r.flow_index, r.yield_stress, r.consistency, r.jump_number);
   if (scene.fluid.heat) {

@@ -23,6 +23,7 @@ template <int Dim> struct Parameters {
   long long boundary_every = 1;       // steps; how often dynamic boundary particles' density follows its rate
   std::array<double, Dim> gravity{};  // m/s²
   KernelKind kernel = KernelKind::wendland_c2;
+  double kernel_second_moment = 0;  // ∫ W r² dV, m²
   EquationOfState eos;
   std::optional<double> surface_potential;  // m²/s², −g·x of the surface that the fluid is at rest below, at the start
   double viscosity = 0;                     // Pa s, Newtonian

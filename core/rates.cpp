@@ -84,7 +84,7 @@ template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   else
     pass(artificial, LaminarViscosity<Real>(s.features.morris_viscosity() ? p.viscosity : 0, rho0),
          MonaghanViscosity<Dim, Real>(s.features.monaghan_viscosity ? p.viscosity : 0, rho0),
-         StressForce<Dim, Real>(s.features.stress, rho0),
+         StressForce<Dim, Real>(s.features.stress, rho0, p.kernel_second_moment),
          HeatConduction<Real>(s.features.heat ? p.diffusivity : 0, rho0), diffusion,
          XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
 }

@@ -16,7 +16,7 @@ template <int Dim, class Real> void single_rates_pass(State<Dim, Real>& s) {
   const auto pass = [&](const auto&... terms) {
     run_rates_pass_at_walls(s, Continuity{}, PressureForce{}, artificial_viscosity_of(s), terms...);
   };
-  const StressForce<Dim, Real> stress_force(true, rho0);
+  const StressForce<Dim, Real> stress_force(true, rho0, p.kernel_second_moment);
   const HeatConduction<Real> conduction(p.diffusivity, rho0);
   if (f.stress && f.heat)
     pass(Always(stress_force), Always(conduction));

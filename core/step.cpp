@@ -129,10 +129,10 @@ template <int Dim, class Real> void require_sane(const State<Dim, Real>& s) {
 template <int Dim, class Real> double viscous_limit(const State<Dim, Real>& s, double kinematic_viscosity) {
   const Parameters<Dim>& p = s.parameters;
   double viscous = p.courant_viscous;
-  // Morris' form damps the shortest waves as fast as the Courant number is for. The summed form has two parts that both
-  // do: twice as fast. Of the pairs' tractions four thirds count, and the particles' stresses beside them know nothing
-  // of such waves: 4/3 times as fast.
-  if (s.features.stress) viscous *= s.features.pairwise_stress ? 0.75 : 0.5;
+  // Morris' form damps the shortest waves as fast as the Courant number is for. Of the pairs' tractions four thirds
+  // count, and the particles' stresses beside them know nothing of such waves: 4/3 times as fast. What damps them beside
+  // summed stresses knows the axis that they are along: 3/2 times as fast, at most (tests/levels_test.cpp).
+  if (s.features.stress) viscous *= s.features.pairwise_stress ? 3.0 / 4 : 2.0 / 3;
   // (d + 2) cos² times what Morris' form makes of a pair.
   if (s.features.monaghan_viscosity) viscous /= Dim + 2;
   if (s.features.wall_support) viscous /= std::max(1.0, s.wall_support.viscous_stiffness());

@@ -99,7 +99,8 @@ template <int Dim, class Real> class Twin {
       return double(p_[stress][k][i]) + p_[stress][k][j];
     };
     const double rest = damped_approach(i, j, x, vx), eta_i = p_[viscosity][0][i], eta_j = p_[viscosity][0][j];
-    const double damping = 2 * (Dim + 2) * 2 * eta_i * eta_j / (eta_i + eta_j) * rest / (rho_i * rho_j * r * r);
+    const double damping =
+        2 * Dim / q_.kernel_second_moment * 2 * eta_i * eta_j / (eta_i + eta_j) * rest / (rho_i * rho_j);
     for (int a = 0; a < Dim; ++a) {
       sums.add(a, damping * mF * x[a]);
       sums.add(a, -(pressure + pi_ij) * mF * x[a]);
@@ -149,7 +150,8 @@ template <int N, int Dim, class Real> std::vector<Sums> fused(const State<Dim, R
   with_kernel<Real>(q.kernel, Dim, q.smoothing_length, q.particle_mass, [&](const auto& kernel) {
     pair_pass<N>(s.neighbours, s.particles, kernel, finish, Continuity{}, PressureForce{}, StrainRateTerm{},
                  ArtificialViscosity<Real>(on ? alpha : 0, q.eos.sound_speed, q.smoothing_length, rho0),
-                 LaminarViscosity<Real>(on ? viscosity_of_all : 0, rho0), StressForce<Dim, Real>(on, 1000),
+                 LaminarViscosity<Real>(on ? viscosity_of_all : 0, rho0),
+                 StressForce<Dim, Real>(on, 1000, q.kernel_second_moment),
                  HeatConduction<Real>(on ? diffusivity_of_all : 0, rho0), XsphTerm<Real>(on, rho0));
   });
   return all;

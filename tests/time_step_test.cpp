@@ -57,7 +57,8 @@ TEST(TimeStep, ViscousOfTheTrueViscosity) {
   const Clock clock = clock_after_a_step(scene);
   const double eta0 = 151 * 60 / 9.0;  // at rest
   EXPECT_EQ(clock.limit, Limit::viscous);
-  EXPECT_NEAR(clock.dt, 0.05 * smoothing_length * smoothing_length * 1000 / eta0, 1e-12);  // half: see step.cpp
+  const double courant = 0.1 * 2 / 3;  // see step.cpp
+  EXPECT_NEAR(clock.dt, courant * smoothing_length * smoothing_length * 1000 / eta0, 1e-12);
 }
 
 TEST(TimeStep, Force) {
