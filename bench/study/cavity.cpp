@@ -50,7 +50,7 @@ void run(const Request& r, Report& report) {
   const double spacing = 1.0 / static_cast<double>(r.size);
   Setup s;
   s.scene = scene_head(2, {}) + fluid_text(2, spacing, 1, newtonian_text(1 / r["reynolds"])) + sound_speed_text(10) +
-            wall_support_text() + walls;
+            wall_support_text() + std::string(driven_text) + walls;
   s.start = lattice(2, {}, {1, 1, 0}, spacing);
   const auto simulation = Simulation::make(r, s, report);
   LineErrors errors(r["reynolds"]);

@@ -128,7 +128,7 @@ std::string without(std::string text, std::string_view part) {
 /// The sources' presets keep their own smoothing lengths; the methods kept for replication have no support at walls.
 std::string as_in_source(const std::string& preset, std::string text) {
   const bool replicates = preset == "dias" || preset == "queiroz";
-  if (replicates || preset == "paiva") text = without(text, impact_text);
+  if (replicates || preset == "paiva") text = without(without(text, impact_text), driven_text);
   if (replicates)
     for (const double diffusion : {0.1, 0.2}) text = without(text, wall_support_text(diffusion));
   return text;
