@@ -1,4 +1,4 @@
-// The cell grid that orders the particles: columns of about 1.6 spacings across, running along the last axis (3-D:
+// The cell grid that orders the particles: columns of 2 spacings across, running along the last axis (3-D:
 // columns along z; 2-D: strips along y), cut along that axis into segments whose middles are the origins that local
 // positions refer to.
 #pragma once
