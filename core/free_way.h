@@ -1,5 +1,5 @@
 // How far each particle may go from where it was sorted before it can meet a wall, in half a byte: most need no
-// collision.
+// collision. And what it then meets, where that is one face for all of a cluster.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "core/archive.h"
 #include "core/particles.h"
 
 namespace molten {
@@ -17,7 +18,10 @@ class FreeWay {
   static constexpr double longest = 0.5;
 
   /// Nobody meets a wall within the longest.
-  void reset(std::size_t slots) { parts_.assign(slots / 2, beyond << 4 | beyond); }
+  void reset(std::size_t slots) {
+    parts_.assign(slots / 2, beyond << 4 | beyond);
+    face_.assign(slots / cluster_size, no_face);
+  }
   /// `way` in spacings. Two slots share a byte: those of a cluster are for one thread.
   void set(std::size_t slot, double way) {
     std::uint8_t& both = parts_[slot / 2];
@@ -39,13 +43,22 @@ class FreeWay {
     return any;
   }
 
-  std::vector<std::uint8_t>& column() { return parts_; }
-  std::size_t bytes() const { return parts_.capacity(); }
+  /// The face (Contact::only_face) that is all that a whole cluster's particles can meet within the longest way.
+  static constexpr std::int32_t no_face = -1;
+  void set_face(std::size_t cluster, std::int32_t face) { face_[cluster] = face; }
+  std::int32_t face(std::size_t cluster) const { return face_[cluster]; }
+
+  void archive(Archive& a) {
+    a.vector("neighbours/free_way", parts_);
+    a.vector("neighbours/only_face", face_);
+  }
+  std::size_t bytes() const { return parts_.capacity() + face_.capacity() * sizeof face_[0]; }
 
  private:
   static constexpr double parts_per_spacing = 28;
   static constexpr std::uint8_t beyond = 15;
   std::vector<std::uint8_t> parts_;
+  std::vector<std::int32_t> face_;  // by cluster
 };
 
 }  // namespace molten

@@ -5,18 +5,10 @@
 #include <cmath>
 #include <span>
 
-#include "core/simd.h"
+#include "core/cluster_motion.h"
 #include "core/state.h"
 
 namespace molten {
-
-/// The particles of a cluster, for arithmetic in double.
-using ClusterLanes = Lanes<double, cluster_size>;
-
-/// Motion of a cluster's particles.
-template <int Dim> struct ClusterMotion {
-  Vec<Dim, ClusterLanes> position, velocity, rate;  // m, m/s, m/s
-};
 
 /// The rate of a particle's place beside its velocity: XSPH and shifting. T: double, or ClusterLanes for a cluster from
 /// its first slot.
@@ -79,10 +71,14 @@ template <int Dim, class Real> class Mover {
   /// The same for all of a cluster: 1 for those that bounced, else 0. Padding, and what a vent or a wall moves, does
   /// not count. `kicks`: what bodies give to particles is added.
   ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
+    const bool may_meet = may_collide(cluster);
+    if (may_meet && way_ <= FreeWay::longest && !held_)
+      if (const std::int32_t face = s_.free_way.face(cluster); face != FreeWay::no_face)
+        if (const auto bounced = s_.contact.bounce_off(face, m, s_.clock.dt)) return *bounced;
     const Vec<Dim, ClusterLanes> before = m.position;
     m.position += ClusterLanes(s_.clock.dt) * m.rate;
     ClusterLanes bounced(0.0);
-    if (!may_collide(cluster)) return bounced;
+    if (!may_meet) return bounced;
     for (int n = 0; n < cluster_size; ++n)
       if (may_bounce(cluster * cluster_size + n)) set_lane(bounced, n, double(collide(before, m, n, kicks)));
     return bounced;

@@ -75,6 +75,7 @@ template <class Real, int N>
 inline Lanes<Real, N> select_less(Lanes<Real, N> a, Lanes<Real, N> b, Lanes<Real, N> x, Lanes<Real, N> y) {
   return a.v < b.v ? x.v : y.v;
 }
+inline double select_less(double a, double b, double x, double y) { return a < b ? x : y; }
 
 /// 8 consecutive numbers from memory.
 inline Lanes<float, 8> load_8(const float* p) { return Lanes<float, 8>((Lanes<float, 8>::Native)_mm256_loadu_ps(p)); }

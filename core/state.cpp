@@ -47,7 +47,7 @@ template <int Dim, class Real> void State<Dim, Real>::archive(Archive& a) {
   vents.archive(a);
   particles.archive(a);
   neighbours.archive(a);
-  a.vector("neighbours/free_way", free_way.column());  // as of the last sort: where the particles are now tells otherwise
+  free_way.archive(a);  // as of the last sort: where the particles are now tells otherwise
   if (features.wall_support) wall_support.archive(a);
   if (a.loading()) neighbours.relist(particles);
   if (features.sleep) sleep.archive(a);

@@ -108,9 +108,13 @@ template <int Dim, class Real> void look_for_walls(State<Dim, Real>& s) {
   const std::size_t first = s.neighbours.first_slot(Block::active);
   for_each_near_walls(s.particles, s.contact, first, longest, [&](std::size_t cluster) {
     const std::size_t slot = cluster * cluster_size;
+    OneFace face;
     for_each_place(s.particles, slot, slot + cluster_size, [&](std::size_t k, const Point<Dim>& x) {
-      s.free_way.set(k, s.contact.free_way(x, longest) / spacing);
+      const double way = s.contact.free_way(x, longest);
+      s.free_way.set(k, way / spacing);
+      face.add(way < longest ? s.contact.only_face(x, longest) : OneFace::any);
     });
+    s.free_way.set_face(cluster, face.of_all());
   });
   if (s.features.wall_support)
     s.wall_support.mark(s.particles, s.neighbours.first_slot(Block::warm), s.bodies, s.contact);
@@ -130,8 +134,8 @@ template <int Dim, class Real> double viscous_limit(const State<Dim, Real>& s, d
   const Parameters<Dim>& p = s.parameters;
   double viscous = p.courant_viscous;
   // Morris' form damps the shortest waves as fast as the Courant number is for. Of the pairs' tractions four thirds
-  // count, and the particles' stresses beside them know nothing of such waves: 4/3 times as fast. What damps them beside
-  // summed stresses knows the axis that they are along: 3/2 times as fast, at most (tests/levels_test.cpp).
+  // count, and the particles' stresses beside them know nothing of such waves: 4/3 times as fast. What damps them
+  // beside summed stresses knows the axis that they are along: 3/2 times as fast, at most (tests/levels_test.cpp).
   if (s.features.stress) viscous *= s.features.pairwise_stress ? 3.0 / 4 : 2.0 / 3;
   // (d + 2) cos² times what Morris' form makes of a pair.
   if (s.features.monaghan_viscosity) viscous /= Dim + 2;

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/boundary/face_bounce.h"
 #include "core/boundary/surface_search.h"
 #include "core/boundary/touching.h"
 #include "core/error.h"
@@ -287,6 +288,17 @@ template <int Dim> double Contact<Dim>::free_way(const Point<Dim>& x, double lim
   const double touching = impl_->radius + 4 * impl_->skin;
   const auto near = impl_->nearest_any(x, limit + touching);
   return near.rank < 0 ? limit : std::max(0.0, near.distance - touching);
+}
+
+template <int Dim>
+std::optional<ClusterLanes> Contact<Dim>::bounce_off(std::int32_t face, ClusterMotion<Dim>& motion, double dt) const {
+  const WallSurface<Dim>& surface = impl_->fixed.search->surface();
+  const Wall<Dim>& wall = impl_->fixed.walls[surface.wall(face)];
+  return FaceBounce<Dim>(surface.facets()[face], wall, impl_->radius, impl_->skin).move(motion, dt);
+}
+
+template <int Dim> std::int32_t Contact<Dim>::only_face(const Point<Dim>& x, double reach) const {
+  return impl_->bodies.empty() ? impl_->fixed.search->only_face(x, reach) : -1;
 }
 
 template <int Dim>

@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "core/boundary/rigid_motion.h"
+#include "core/cluster_motion.h"
 
 namespace molten {
 
@@ -114,6 +115,13 @@ template <int Dim> class Contact {
   /// along the wall's normal. Returns how many bounces there were. A rate that is not finite moves it all the same.
   /// `kicks`: one for each body, or none; what the particle's velocity gains at a body is added to the body's.
   int move(Motion<Dim>& motion, double dt, std::span<Kick<Dim>> kicks = {}) const;
+
+  /// Moves all of a cluster at once, as `move` would each, where `face` is all that they can meet and each bounces off
+  /// it once at most; 1 for those that did, else 0. Where one does more, nothing is moved: no value.
+  std::optional<ClusterLanes> bounce_off(std::int32_t face, ClusterMotion<Dim>& motion, double dt) const;
+
+  /// The face that is all that a particle can meet within `reach` (m) of x; −1 if there is none, or more than it.
+  std::int32_t only_face(const Point<Dim>& x, double reach) const;
 
   /// False only if no wall can be met within `reach` (m) of x beyond the radius: the cheap test for most particles.
   /// Bodies count where their motion starts; their own way is part of the reach.

@@ -1,11 +1,12 @@
 // The clusters that walls may concern. Most are far from any, so runs of them are asked for first: particles that
-// follow one another are near each other.
+// follow one another are near each other. And what those of a cluster share.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/boundary/contact.h"
+#include "core/free_way.h"
 #include "core/particle_pass.h"
 #include "core/particles.h"
 
@@ -50,5 +51,24 @@ void for_each_near_walls(const Particles<Dim, Real>& particles, const Contact<Di
     for (std::size_t cluster = begin / cluster_size; cluster < end / cluster_size; ++cluster) f(cluster);
   });
 }
+
+/// The face that is all that any of a whole cluster's particles can meet.
+class OneFace {
+ public:
+  static constexpr std::int32_t any = -2;  // of a particle that can meet none
+
+  void add(std::int32_t face) {
+    ++count_;
+    if (face == any) return;
+    alone_ &= face_ == any || face_ == face;
+    face_ = face;
+  }
+  std::int32_t of_all() const { return alone_ && face_ >= 0 && count_ == cluster_size ? face_ : FreeWay::no_face; }
+
+ private:
+  std::int32_t face_ = any;
+  bool alone_ = true;
+  int count_ = 0;
+};
 
 }  // namespace molten

@@ -133,6 +133,23 @@ template <int Dim> FewFacets SurfaceSearch<Dim>::few_within(const Point<Dim>& x,
   return few;
 }
 
+template <int Dim> std::int32_t SurfaceSearch<Dim>::only_face(const Point<Dim>& x, double reach) const {
+  if (tree_alone_ || has_planes()) return -1;
+  const Point<Dim> around = Point<Dim>::Constant(reach);
+  std::int32_t face = -1;
+  bool alone = true;
+  grid_.visit_box(x - around, x + around, [&](std::span<const std::int32_t> facets) {
+    for (const std::int32_t facet : facets) {
+      const auto at = sides_[facet].at(x);
+      if (facet == face || at.further_than(radius_ + reach + side_slack_)) continue;
+      alone = face < 0 && at.inside > reach + side_slack_;
+      face = facet;
+      if (!alone) return;
+    }
+  });
+  return alone ? face : -1;
+}
+
 template <int Dim>
 FirstContact<Dim> SurfaceSearch<Dim>::search_contact(const Point<Dim>& x, const Point<Dim>& d, double r,
                                                      const FewFacets& few) const {

@@ -65,6 +65,9 @@ template <int Dim> class SurfaceSearch {
 
   /// The facets within a radius of any place within `reach` (m) of x.
   FewFacets few_within(const Point<Dim>& x, double reach) const;
+  /// The facet that is alone within a radius of all places within `reach` (m) of x, which are over its inside; −1 if
+  /// none is.
+  std::int32_t only_face(const Point<Dim>& x, double reach) const;
 
   /// What a sphere of radius r (m), at most that of the construction, meets first on its way from x to x + d. `few`:
   /// where they are known for all of the way, only they are looked at.

@@ -1,11 +1,11 @@
-// The walls that a particle touches at the same moment, and what becomes of its velocity there ([P] 6.3.1, with
-// Coulomb's friction and a stress that sticks).
+// The walls that a particle touches at the same moment, and what becomes of its velocity there.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/boundary/impact.h"
 #include "core/boundary/sweep.h"
 
 namespace molten {
@@ -28,7 +28,7 @@ template <int Dim> class Touching {
   /// alone at walls still touched that the velocity now approaches. gained(touch, change of velocity) tells who changed
   /// it.
   template <class Gained> void respond(Point<Dim>& u, double dt, Gained&& gained) const {
-    change(u, last(), after_impact(u, last(), dt), gained);
+    change(u, last(), after_impact_on(last(), u, dt), gained);
     for (int i = 0; i < most_responses; ++i) {
       const int k = approached(u);
       if (k == count_) return;
@@ -49,19 +49,14 @@ template <int Dim> class Touching {
     u = to;
   }
 
-  static Point<Dim> after_impact(const Point<Dim>& u, const Touch<Dim>& t, double dt) {
-    const Response& r = *t.response;
-    const Point<Dim> relative = u - t.velocity;
-    const double normal_part = relative.dot(t.normal);
-    const Point<Dim> tangential = relative - normal_part * t.normal;
-    const double rebound = (normal_part < 0 ? -r.restitution : 1.0) * normal_part;
-    double keeps = r.slip;
-    if (r.grip) {
-      const double brake = r.grip->friction * std::abs(rebound - normal_part) + r.grip->hold * dt;
-      const double speed = tangential.norm();
-      keeps = speed > brake ? 1 - brake / speed : 0;
-    }
-    return t.velocity + keeps * tangential + rebound * t.normal;
+  static Point<Dim> after_impact_on(const Touch<Dim>& t, const Point<Dim>& u, double dt) {
+    const auto vec = [](const Point<Dim>& x) {
+      Vec<Dim, double> v;
+      Eigen::Map<Point<Dim>>(v.c.data()) = x;
+      return v;
+    };
+    const auto after = after_impact(vec(u), vec(t.normal), vec(t.velocity), *t.response, dt);
+    return Eigen::Map<const Point<Dim>>(after.c.data());
   }
 
   bool is_approached(const Point<Dim>& u, int k) const {

@@ -27,7 +27,7 @@ template <class T> T power_less_one(const T& x, double gamma) {
   constexpr double largest_whole = 16;
   if (gamma >= 1 && gamma <= largest_whole && gamma == std::floor(gamma)) {
     T power = x;
-    for (int n = 1; n < static_cast<int>(gamma); ++n) power = power + (power * x + x);
+    for (int n = 1; n < static_cast<int>(gamma); ++n) power = power * (T(1) + x) + x;
     return power;
   }
   return each_lane(x, [gamma](double x) { return std::expm1(gamma * std::log1p(x)); });
