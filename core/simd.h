@@ -397,19 +397,21 @@ template <class T> inline void prefetch(const T* p, std::size_t count) {
   for (std::size_t k = 0; k < count * sizeof(T); k += line) __builtin_prefetch(reinterpret_cast<const char*>(p) + k);
 }
 
+/// Which of 8 bits are set, in order; then zeros.
+inline __m256i set_bits(unsigned mask) {
+#if defined(__AVX512VL__)
+  return _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+#else
+  const std::uint64_t bytes = _pdep_u64(mask, 0x0101010101010101) * 0xff;
+  return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(_pext_u64(0x0706050403020100, bytes))));
+#endif
+}
+
 /// Writes first + k for each bit k of the mask, in order, and returns how many; 8 numbers are written over.
 inline int write_set_bits(unsigned mask, std::uint32_t first, std::uint32_t* to) {
-#if defined(__AVX512VL__)
-  const __m256i numbers =
-      _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
-                      _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), numbers));
+  const __m256i numbers = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), set_bits(mask));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), numbers);
   return std::popcount(mask);
-#else
-  int count = 0;
-  for (; mask; mask &= mask - 1) to[count++] = first + static_cast<std::uint32_t>(std::countr_zero(mask));
-  return count;
-#endif
 }
 
 /// Writes from[k] + by for k < count. Reads and writes up to 16 beyond the last.
@@ -429,9 +431,14 @@ inline unsigned breaks(const std::uint32_t* numbers) {
   const __m512i following = _mm512_maskz_add_epi32(0xffff, _mm512_loadu_si512(numbers - 1), _mm512_set1_epi32(1));
   return _mm512_cmpneq_epi32_mask(_mm512_loadu_si512(numbers), following);
 #else
-  unsigned mask = 0;
-  for (int k = 0; k < 16; ++k) mask |= static_cast<unsigned>(numbers[k] != numbers[k - 1] + 1) << k;
-  return mask;
+  unsigned following = 0;
+  for (int k = 0; k < 16; k += 8) {
+    const __m256i before = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(numbers + k - 1));
+    const __m256i same = _mm256_cmpeq_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(numbers + k)),
+                                            _mm256_add_epi32(before, _mm256_set1_epi32(1)));
+    following |= static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(same))) << k;
+  }
+  return ~following & 0xffffu;
 #endif
 }
 
@@ -449,7 +456,13 @@ inline std::size_t select_less_by(const std::uint32_t* from, std::size_t words, 
     _mm512_storeu_si512(to + count, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), numbers));
     count += static_cast<std::size_t>(std::popcount(mask));
 #else
-    for (; mask; mask &= mask - 1) to[count++] = from[16 * w + static_cast<unsigned>(std::countr_zero(mask))] - by;
+    for (int half = 0; half < 2; ++half, mask >>= 8) {
+      const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + 16 * w + 8 * half));
+      const __m256i numbers = _mm256_sub_epi32(all, _mm256_set1_epi32(static_cast<int>(by)));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(to + count),
+                          _mm256_permutevar8x32_epi32(numbers, set_bits(mask & 0xff)));
+      count += static_cast<std::size_t>(std::popcount(mask & 0xff));
+    }
 #endif
   }
   return count;
@@ -461,9 +474,11 @@ inline std::uint16_t gather_bit(const std::uint16_t* flags, int bit) {
   return _mm256_test_epi16_mask(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(flags)),
                                 _mm256_set1_epi16(static_cast<short>(1 << bit)));
 #else
-  unsigned mask = 0;
-  for (int k = 0; k < 16; ++k) mask |= (flags[k] >> bit & 1u) << k;
-  return static_cast<std::uint16_t>(mask);
+  // The bit becomes the sign, saturation keeps signs, and the halves are put back in order.
+  const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(flags));
+  const __m256i signs = _mm256_sll_epi16(all, _mm_cvtsi32_si128(15 - bit));
+  const __m128i bytes = _mm_packs_epi16(_mm256_castsi256_si128(signs), _mm256_extracti128_si256(signs, 1));
+  return static_cast<std::uint16_t>(_mm_movemask_epi8(bytes));
 #endif
 }
 

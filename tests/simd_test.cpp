@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace molten {
 namespace {
@@ -75,6 +76,57 @@ TYPED_TEST(LanesOfPairs, CompareFourWithBounds) {
         if (lane(a[k % 4], n) < bounds[k]) expected |= 1u << k;
     EXPECT_EQ(any_less_bits<12>(a, bounds), expected);
   }
+}
+
+/// Numbers that often follow one another, and room around them.
+struct NumberLists : testing::Test {
+  static constexpr std::size_t words = 8, count = 16 * words;
+
+  NumberLists() {
+    for (std::size_t k = 1; k < from_.size(); ++k) from_[k] = from_[k - 1] + 1 + (random_() % 4 == 0);
+    for (auto& mask : masks_) mask = static_cast<std::uint16_t>(random_());
+    masks_[2] = 0, masks_[3] = 0xffff;
+  }
+  const std::uint32_t* from() const { return from_.data() + 16; }
+
+  std::mt19937 random_{3};
+  std::array<std::uint32_t, count + 32> from_{}, to_{};
+  std::array<std::uint16_t, words> masks_{};
+};
+
+TEST_F(NumberLists, SelectByBits) {
+  std::vector<std::uint32_t> expected;
+  for (std::size_t k = 0; k < count; ++k)
+    if (masks_[k / 16] >> k % 16 & 1) expected.push_back(from()[k] - 5);
+  const std::size_t found = select_less_by(from(), words, 5, to_.data(), [&](std::size_t w) { return masks_[w]; });
+  EXPECT_EQ(std::vector<std::uint32_t>(to_.begin(), to_.begin() + static_cast<std::ptrdiff_t>(found)), expected);
+}
+
+TEST_F(NumberLists, BitsThatAreSet) {
+  for (unsigned mask = 0; mask < 256; ++mask) {
+    const int found = write_set_bits(mask, 100, to_.data());
+    int n = 0;
+    for (unsigned k = 0; k < 8; ++k) {
+      if ((mask >> k & 1) == 0) continue;
+      ASSERT_EQ(to_[static_cast<std::size_t>(n++)], 100 + k) << mask;
+    }
+    ASSERT_EQ(found, n);
+  }
+}
+
+TEST_F(NumberLists, BreaksBetweenRuns) {
+  for (std::size_t w = 0; w < words; ++w)
+    for (unsigned k = 0; k < 16; ++k) {
+      const std::uint32_t* const at = from() + 16 * w + k;
+      EXPECT_EQ(breaks(from() + 16 * w) >> k & 1, at[0] != at[-1] + 1);
+    }
+}
+
+TEST_F(NumberLists, OneBitOfEach) {
+  std::array<std::uint16_t, 16> flags;
+  for (auto& f : flags) f = static_cast<std::uint16_t>(random_());
+  for (int bit = 0; bit < 16; ++bit)
+    for (unsigned k = 0; k < 16; ++k) EXPECT_EQ(gather_bit(flags.data(), bit) >> k & 1, flags[k] >> bit & 1) << bit;
 }
 
 }  // namespace
