@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "core/boundary/gauss.h"
@@ -25,6 +26,14 @@ double length_of(double a, double b) { return std::sqrt(a * a + b * b); }
 
 /// The angle (rad) under which a line's part t0..t1 is seen from a point at the distance p.
 double angle_of(double p, double t0, double t1) { return std::atan2(p * (t1 - t0), p * p + t0 * t1); }
+
+/// An edge seen from the foot of a particle: how far inwards of the edge's line it is, and the edge along that (m).
+template <int Dim> struct EdgeSeen {
+  double p, t0, t1;
+  template <class Edge>
+  EdgeSeen(const Edge& e, const Point<Dim>& foot)
+      : p(e.outward.dot(e.start - foot)), t0(e.along.dot(e.start - foot)), t1(t0 + e.length) {}
+};
 
 /// The part of the line's interval t0..t1 that is within `half` of its foot; false if none.
 bool clip(double half2, double t0, double t1, double& from, double& to) {
@@ -287,8 +296,7 @@ template <int Dim> void WallIntegrals<Dim>::add(PatchSums<Dim>& sums, const Clum
   const SmallPiece<Dim> piece(radial_, clump.spread, y, distance2);
   const double height = -clump.area * clump.normal.dot(y) - clump.bulge;  // ∫ n·(x − y) dS
   const std::int32_t wall = planes_[sheets_[clump.sheets_begin].plane].wall;
-  sums.of(clump.normal, height > 0, wall)
-      .add(clump.normal, clump.area * piece.weight, clump.area * piece.moment, height * piece.hidden);
+  sums.add(clump.normal, height > 0, wall, clump.area * piece.weight, clump.area * piece.moment, height * piece.hidden);
 }
 
 template <int Dim>
@@ -307,7 +315,8 @@ void WallIntegrals<Dim>::add(PatchSums<Dim>& sums, const Sheet& sheet, bool whol
     add_exact(sum, sheet, x, d);
     sum.moment -= d * sum.weight * sheet.normal;
   }
-  sums.of(sheet.normal, d > 0, plane.wall).add(sheet.normal, sum.weight, sum.moment, sum.hidden);
+  if (sum.weight == 0) return;
+  sums.add(sheet.normal, d > 0, plane.wall, sum.weight, sum.moment, sum.hidden);
 }
 
 /// A part of a facet, `scale` times as large (and turned by half a turn if that is negative): cut in 2^(d−1) like it
@@ -358,19 +367,13 @@ void WallIntegrals<Dim>::add_exact(Sum& sum, const Sheet& sheet, const Point<Dim
   } else {
     // ∫ Q dA = ∮ (P(foot) − P) p/ρ² dt and ∫ Q ρ dA = −∮ P ν dt, with P = ∫_ρ Q s ds, over the polygon's edges
     const double weight = radial_.weight_beyond(at_foot), hidden = radial_.hidden_beyond(at_foot) / at_foot;
+    double angle;  // under which what the support leaves of the edges is seen
+    if (!angle_left(sheet, foot, radius2, angle)) return;
     for (std::uint32_t k = sheet.edges_begin; k < sheet.edges_end; ++k) {
       const Edge& e = edges_[k];
-      const Point<3> a = e.start - foot;
-      const double p = e.outward.dot(a), t0 = e.along.dot(a), t1 = t0 + e.length;
+      const auto [p, t0, t1] = EdgeSeen<3>(e, foot);
       double from, to;
-      if (!clip(radius2 - p * p, t0, t1, from, to)) {
-        const double angle = angle_of(p, t0, t1);
-        sum.weight += weight * angle;
-        sum.hidden += height * hidden * angle;
-        continue;
-      }
-      if (e.cancels) continue;
-      const double angle = (t0 < from ? angle_of(p, t0, from) : 0) + (to < t1 ? angle_of(p, to, t1) : 0);
+      if (e.cancels || !clip(radius2 - p * p, t0, t1, from, to)) continue;
       double inside_weight = 0, inside_hidden = 0, edge_weight = 0;
       const auto integrate = [&](const auto& rule) {
         const double half = (to - from) / 2, middle = (to + from) / 2;
@@ -386,11 +389,31 @@ void WallIntegrals<Dim>::add_exact(Sum& sum, const Sheet& sheet, const Point<Dim
         integrate(coarse);
       else
         integrate(fine);
-      sum.weight += weight * angle + inside_weight;
-      sum.hidden += height * (hidden * angle + inside_hidden);
+      sum.weight += inside_weight;
+      sum.hidden += height * inside_hidden;
       sum.moment -= edge_weight * e.outward;
     }
+    sum.weight += weight * angle;
+    sum.hidden += height * hidden * angle;
   }
+}
+
+/// The angle under which the foot of a particle sees what its support leaves of a convex sheet's edges; false if the
+/// two have nothing in common. All edges together go once round a foot inside, so what the support cuts out of them
+/// tells: fewer angles, and a foot on an edge between two sheets is inside of both or of none without harm.
+template <int Dim>
+bool WallIntegrals<Dim>::angle_left(const Sheet& sheet, const Point<Dim>& foot, double radius2, double& angle) const {
+  bool inside = true;
+  double within = 0;
+  for (std::uint32_t k = sheet.edges_begin; k < sheet.edges_end; ++k) {
+    const auto [p, t0, t1] = EdgeSeen<Dim>(edges_[k], foot);
+    if (p < 0 && p * p >= radius2) return false;
+    inside = inside && p >= 0;
+    double from, to;
+    if (clip(radius2 - p * p, t0, t1, from, to)) within += angle_of(p, from, to);
+  }
+  angle = (inside ? 2 * std::numbers::pi : 0) - within;
+  return true;
 }
 
 template <int Dim>

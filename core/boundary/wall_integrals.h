@@ -43,6 +43,9 @@ template <int Dim> class WallIntegrals {
     return {p.normal, near ? radial_.plane_weight(d) : 0, near ? radial_.plane_hidden(d) : 0, d, p.wall};
   }
 
+  const Point<Dim>& normal(std::int32_t plane) const { return planes_[static_cast<std::size_t>(plane)].normal; }
+  std::int32_t wall(std::int32_t plane) const { return planes_[static_cast<std::size_t>(plane)].wall; }
+
   static constexpr std::int32_t no_plane = -1, many_planes = -2;
   /// The only plane that is within `reach` (m) of x and goes on without an edge there; or no plane; or many.
   std::int32_t plane_near(const Point<Dim>& x, double reach) const;
@@ -93,6 +96,7 @@ template <int Dim> class WallIntegrals {
   void add(PatchSums<Dim>& sums, const Sheet& sheet, bool whole, const Point<Dim>& x) const;
   void add_part(Sum& sum, const Sheet& sheet, const Point<Dim>& centre, double scale, const Point<Dim>& x) const;
   void add_exact(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const;
+  bool angle_left(const Sheet& sheet, const Point<Dim>& foot, double radius2, double& angle) const;
   double distance(const Sheet& sheet, const Point<Dim>& x, bool outer_edges_alone) const;
 
   RadialIntegrals radial_;

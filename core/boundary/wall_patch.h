@@ -1,7 +1,9 @@
 // What a piece of a wall cuts off a particle's support, and how facets add up to it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/boundary/point.h"
 
@@ -35,21 +37,31 @@ template <int Dim> struct WallPatch : WallPiece<Dim> {
 /// 45° of the first.
 template <int Dim> class PatchSum {
  public:
-  PatchSum() = default;
-  PatchSum(const Point<Dim>& normal, bool front, std::int32_t wall) : first_(normal), front_(front), wall_(wall) {}
+  PatchSum() {}  // nothing, not even zeros
+  /// Of the first facet, by its ∫ W dS, ∫ W y dS and hidden part.
+  [[gnu::always_inline]] PatchSum(const Point<Dim>& normal, bool front, std::int32_t wall, double weight,
+                                  const Point<Dim>& moment, double hidden)
+      : first_(normal),
+        front_(front),
+        wall_(wall),
+        weight_(weight),
+        hidden_(hidden),
+        flux_(weight * normal),
+        centre_(moment),
+        moment_(normal * moment.transpose()),
+        across_(hidden * normal * normal.transpose()) {}
 
   bool takes(const Point<Dim>& normal, bool front, std::int32_t wall) const {
     return front == front_ && wall == wall_ && normal.dot(first_) > 0.7;
   }
 
-  /// A facet's ∫ W dS, ∫ W y dS and hidden part.
-  [[gnu::always_inline]] void add(const Point<Dim>& normal, double weight, const Point<Dim>& moment, double hidden) {
-    weight_ += weight;
-    hidden_ += hidden;
-    centre_ += moment;
-    flux_ += weight * normal;
-    moment_ += normal * moment.transpose();
-    across_ += hidden * normal * normal.transpose();
+  [[gnu::always_inline]] void join(const PatchSum& other) {
+    weight_ += other.weight_;
+    hidden_ += other.hidden_;
+    flux_ += other.flux_;
+    centre_ += other.centre_;
+    moment_ += other.moment_;
+    across_ += other.across_;
   }
 
   double weight() const { return weight_; }  // ∫ W dS, 1/m
@@ -67,22 +79,27 @@ template <int Dim> class PatchSum {
   }
 
  private:
-  Point<Dim> first_ = Point<Dim>::Zero();
-  bool front_ = true;
-  std::int32_t wall_ = -1;
-  double weight_ = 0, hidden_ = 0;
-  Point<Dim> flux_ = Point<Dim>::Zero(), centre_ = Point<Dim>::Zero();
-  Turn<Dim> moment_ = Turn<Dim>::Zero(), across_ = Turn<Dim>::Zero();
+  Point<Dim> first_;
+  bool front_;
+  std::int32_t wall_;
+  double weight_, hidden_;
+  Point<Dim> flux_, centre_;
+  Turn<Dim> moment_, across_;
 };
 
-/// The patches of one particle while they are added.
+/// The patches of one particle while they are added. Nothing is cleared, and what a facet begins is written in place:
+/// either would take longer than adding one.
 template <int Dim> class PatchSums {
  public:
-  PatchSum<Dim>& of(const Point<Dim>& normal, bool front, std::int32_t wall) {
-    for (int k = 0; k < count_; ++k)
-      if (sums_[k].takes(normal, front, wall)) return sums_[k];
-    if (count_ == most) return sums_[most - 1];
-    return sums_[count_++] = {normal, front, wall};
+  /// A facet as PatchSum takes it.
+  void add(const Point<Dim>& normal, bool front, std::int32_t wall, double weight, const Point<Dim>& moment,
+           double hidden) {
+    int k = 0;
+    while (k < count_ && !sums_[k].takes(normal, front, wall)) ++k;
+    if (k == count_ && count_ < most)
+      std::construct_at(&sums_[count_++], normal, front, wall, weight, moment, hidden);
+    else
+      sums_[std::min(k, most - 1)].join({normal, front, wall, weight, moment, hidden});
   }
   const PatchSum<Dim>* begin() const { return sums_; }
   const PatchSum<Dim>* end() const { return sums_ + count_; }

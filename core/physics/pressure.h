@@ -1,6 +1,7 @@
 // Pressure: the equations of state and the symmetric force −Σ m_j (p_i/ρ_i² + p_j/ρ_j²) ∇W_ij ([P] 4-38, [D] 5.1).
 #pragma once
 
+#include <bit>
 #include <cmath>
 
 #include "core/fields.h"
@@ -21,13 +22,18 @@ struct PressureForce {
   }
 };
 
-/// (1 + x)^γ − 1 without cancellation. For whole γ by ((1 + x)^{n+1} − 1) = ((1 + x)^n − 1)(1 + x) + x, whose terms
-/// have one sign: the logarithm takes ten times as long. T: double or lanes of it.
+/// (1 + x)^γ − 1 without cancellation. For whole γ by squares, q_2n = q_n (q_n + 2), and one more, q_{n+1} = q_n (1 +
+/// x)
+/// + x, whose terms have one sign each: the logarithm takes ten times as long. T: double or lanes of it.
 template <class T> T power_less_one(const T& x, double gamma) {
   constexpr double largest_whole = 16;
   if (gamma >= 1 && gamma <= largest_whole && gamma == std::floor(gamma)) {
+    const auto n = static_cast<unsigned>(gamma);
     T power = x;
-    for (int n = 1; n < static_cast<int>(gamma); ++n) power = power * (T(1) + x) + x;
+    for (int bit = std::bit_width(n) - 2; bit >= 0; --bit) {
+      power = power * (power + T(2.0));
+      if (n >> bit & 1) power = power * (T(1.0) + x) + x;
+    }
     return power;
   }
   return each_lane(x, [gamma](double x) { return std::expm1(gamma * std::log1p(x)); });
