@@ -43,7 +43,9 @@ class FreeWay {
     return any;
   }
 
-  /// The face (Contact::only_face) that is all that a whole cluster's particles can meet within the longest way.
+  /// The face (Contact::only_face) that is all that a whole cluster's particles can meet within this way (spacings): as
+  /// far as they get with the usual skin, since the further, the fewer clusters there are with one face alone.
+  static constexpr double face_reach = 0.25;
   static constexpr std::int32_t no_face = -1;
   void set_face(std::size_t cluster, std::int32_t face) { face_[cluster] = face; }
   std::int32_t face(std::size_t cluster) const { return face_[cluster]; }

@@ -72,7 +72,7 @@ template <int Dim, class Real> class Mover {
   /// not count. `kicks`: what bodies give to particles is added.
   ClusterLanes move_cluster(std::size_t cluster, ClusterMotion<Dim>& m, std::span<Kick<Dim>> kicks) const {
     const bool may_meet = may_collide(cluster);
-    if (may_meet && way_ <= FreeWay::longest && !held_)
+    if (may_meet && way_ <= FreeWay::face_reach && !held_)
       if (const std::int32_t face = s_.free_way.face(cluster); face != FreeWay::no_face)
         if (const auto bounced = s_.contact.bounce_off(face, m, s_.clock.dt)) return *bounced;
     const Vec<Dim, ClusterLanes> before = m.position;

@@ -104,7 +104,8 @@ template <int Dim, class Real> void look_for_walls(State<Dim, Real>& s) {
   if (!s.features.contact) return;
   s.free_way.reset(s.particles.slots());
   if (s.features.bodies) s.bodies.place(s.contact);
-  const double spacing = s.parameters.spacing, longest = FreeWay::longest * spacing;
+  const double spacing = s.parameters.spacing, longest = FreeWay::longest * spacing,
+               face_reach = FreeWay::face_reach * spacing;
   const std::size_t first = s.neighbours.first_slot(Block::active);
   for_each_near_walls(s.particles, s.contact, first, longest, [&](std::size_t cluster) {
     const std::size_t slot = cluster * cluster_size;
@@ -112,7 +113,7 @@ template <int Dim, class Real> void look_for_walls(State<Dim, Real>& s) {
     for_each_place(s.particles, slot, slot + cluster_size, [&](std::size_t k, const Point<Dim>& x) {
       const double way = s.contact.free_way(x, longest);
       s.free_way.set(k, way / spacing);
-      face.add(way < longest ? s.contact.only_face(x, longest) : OneFace::any);
+      face.add(way < face_reach ? s.contact.only_face(x, face_reach) : OneFace::any);
     });
     s.free_way.set_face(cluster, face.of_all());
   });
