@@ -371,9 +371,10 @@ void WallIntegrals<Dim>::add_exact(Sum& sum, const Sheet& sheet, const Point<Dim
     if (!angle_left(sheet, foot, radius2, angle)) return;
     for (std::uint32_t k = sheet.edges_begin; k < sheet.edges_end; ++k) {
       const Edge& e = edges_[k];
-      const auto [p, t0, t1] = EdgeSeen<3>(e, foot);
+      const EdgeSeen<3> seen(e, foot);
+      const double p = seen.p;
       double from, to;
-      if (e.cancels || !clip(radius2 - p * p, t0, t1, from, to)) continue;
+      if (e.cancels || !clip(radius2 - p * p, seen.t0, seen.t1, from, to)) continue;
       double inside_weight = 0, inside_hidden = 0, edge_weight = 0;
       const auto integrate = [&](const auto& rule) {
         const double half = (to - from) / 2, middle = (to + from) / 2;
