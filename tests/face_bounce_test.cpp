@@ -32,7 +32,7 @@ template <int Dim> Point<Dim> lane_of(const Vec<Dim, ClusterLanes>& all, int n) 
   return Point<Dim>::NullaryExpr([&](Eigen::Index d) { return lane(all[static_cast<int>(d)], n); });
 }
 
-/// Four particles near x, which goes no further than the reach in a time of 1 s; some of them drift (XSPH).
+/// Four particles near x, which go no further than the reach in a time of 1 s; some of them drift (XSPH).
 template <int Dim> FourParticles<Dim> some_near(const Point<Dim>& x, Random<Dim>& random) {
   FourParticles<Dim> all;
   for (Motion<Dim>& m : all) {

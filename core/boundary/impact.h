@@ -1,6 +1,8 @@
 // What becomes of a velocity at a wall ([P] 6.3.1, with Coulomb's friction and a stress that sticks).
 #pragma once
 
+#include <cmath>
+
 #include "core/boundary/contact.h"
 #include "core/simd.h"
 #include "core/vec.h"
