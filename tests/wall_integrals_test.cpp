@@ -182,13 +182,16 @@ TEST(WallIntegrals, TheShortWayIsTheLongOne) {
     const Point<3> x(5, 4.3, d);
     const std::int32_t plane = walls.plane_near(x, reach);
     ASSERT_GE(plane, 0);
-    const WallPiece<3> quick = walls.at_plane(plane, x);
+    const Point<3>& normal = walls.plane(plane).normal;
+    const double height = normal.dot(x) - walls.plane(plane).offset;
+    const auto quick = walls.of_plane(height);
+    EXPECT_NEAR(height, d, 1e-12);
     int visited = 0;
     walls.visit(x, [&](const WallPatch<3>& exact) {
       ++visited;
       EXPECT_NEAR(quick.weight, exact.weight, 1e-5);
       EXPECT_NEAR(quick.hidden, exact.hidden, 1e-5);
-      EXPECT_LT((-quick.distance * quick.normal - exact.centroid).norm(), 1e-4);
+      EXPECT_LT((-height * normal - exact.centroid).norm(), 1e-4);
     });
     EXPECT_EQ(visited, 1);
   }
@@ -209,11 +212,11 @@ TEST(WallIntegrals, EveryKernel) {
                           KernelKind::wendland_c2, KernelKind::lucy, KernelKind::poly6, KernelKind::spiky})
     for (const int dim : {2, 3}) {
       const RadialIntegrals radial(kind, dim, 1);
-      EXPECT_NEAR(radial.plane_hidden(0), 0.5, 2e-3) << static_cast<int>(kind) << ' ' << dim;
+      EXPECT_NEAR(radial.plane(1e-9).hidden, 0.5, 2e-3) << static_cast<int>(kind) << ' ' << dim;
       // Planes stacked from here to the end hide what is behind the first.
       double hidden = 0;
-      for (double d = 0.205; d < radial.reach(); d += 0.01) hidden += 0.01 * radial.plane_weight(d);
-      EXPECT_NEAR(radial.plane_hidden(0.2), hidden, 2e-3) << static_cast<int>(kind) << ' ' << dim;
+      for (double d = 0.205; d < radial.reach(); d += 0.01) hidden += 0.01 * radial.plane(d).weight;
+      EXPECT_NEAR(radial.plane(0.2).hidden, hidden, 2e-3) << static_cast<int>(kind) << ' ' << dim;
     }
 }
 

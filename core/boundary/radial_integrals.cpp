@@ -35,8 +35,7 @@ RadialIntegrals::RadialIntegrals(KernelKind kind, int dim, double smoothing_leng
     weight_beyond_[k] = weight_beyond_[k + 1] + integral(k, [&](double s) { return at(kernel_, s) * s; });
     volume_beyond_[k] = volume_beyond_[k + 1] + integral(k, [&](double s) { return at(kernel_, s) * s * s; });
   }
-  plane_weight_.assign(n + 1, 0);
-  plane_hidden_.assign(n + 1, 0);
+  planes_.assign(n + 1, {});
   if (dim == 2)
     fill_planes_2d();
   else
@@ -54,18 +53,16 @@ void RadialIntegrals::fill_planes_3d() {
     hidden_beyond_[k] = k * step * beyond[k];
   }
   hidden_beyond_[0] = volume_beyond_[0];  // the limit
-  for (std::size_t k = 0; k < n; ++k) {
-    plane_weight_[k] = 2 * std::numbers::pi * weight_beyond_[k];
-    plane_hidden_[k] = 2 * std::numbers::pi * hidden_beyond_[k];
-  }
+  for (std::size_t k = 0; k < n; ++k)
+    planes_[k] = {2 * std::numbers::pi * weight_beyond_[k], 2 * std::numbers::pi * hidden_beyond_[k]};
 }
 
 void RadialIntegrals::fill_planes_2d() {
   const std::size_t n = table_size;
   for (std::size_t k = 0; k < n; ++k) {
     const double d = k / per_entry_, half = std::sqrt(reach_ * reach_ - d * d);
-    plane_weight_[k] = 2 * fine(0, half, [&](double t) { return at(kernel_, std::hypot(d, t)); });
-    plane_hidden_[k] =
+    planes_[k].weight = 2 * fine(0, half, [&](double t) { return at(kernel_, std::hypot(d, t)); });
+    planes_[k].hidden =
         2 * fine(0, std::acos(d / reach_), [&](double a) { return at(weight_beyond_, d / std::cos(a)); });
   }
 }

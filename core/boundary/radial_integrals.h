@@ -21,9 +21,19 @@ class RadialIntegrals {
   RadialIntegrals() = default;
   RadialIntegrals(KernelKind kernel, int dim, double smoothing_length);
 
-  /// Of an infinite plane at the distance d > 0: ∫ W dS (1/m), and the part of ∫ W dV behind it.
-  double plane_weight(double d) const { return at(plane_weight_, d); }
-  double plane_hidden(double d) const { return at(plane_hidden_, d); }
+  /// Of an infinite plane: ∫ W dS (1/m), and the part of ∫ W dV behind it.
+  struct Plane {
+    double weight = 0, hidden = 0;
+  };
+  /// At the height d (m) over the plane; zeros from 0 down and beyond the support.
+  Plane plane(double d) const {
+    const double s = d * per_entry_;
+    const bool near = s > 0 && s < static_cast<double>(planes_.size() - 1);
+    const auto k = near ? static_cast<std::size_t>(s) : planes_.size() - 2;  // zeros, without a branch
+    const double part = near ? s - static_cast<double>(k) : 1;
+    const Plane &a = planes_[k], &b = planes_[k + 1];
+    return {a.weight + part * (b.weight - a.weight), a.hidden + part * (b.hidden - a.hidden)};
+  }
   /// ∫_r^R W s ds, and in 3-D r ∫_r^R H s ds.
   double weight_beyond(double r) const { return at(weight_beyond_, r); }
   double hidden_beyond(double r) const { return at(hidden_beyond_, r); }
@@ -44,7 +54,8 @@ class RadialIntegrals {
 
   int dim_ = 3;
   double reach_ = 0, per_entry_ = 0;  // m, 1/m
-  Table kernel_, slope_, weight_beyond_, volume_beyond_, hidden_beyond_, plane_weight_, plane_hidden_;
+  Table kernel_, slope_, weight_beyond_, volume_beyond_, hidden_beyond_;
+  std::vector<Plane> planes_;
 };
 
 inline KernelBeyond RadialIntegrals::around(double r) const {

@@ -16,6 +16,7 @@ constexpr double clump_radius = 0.2;     // support radii; facets larger than th
 constexpr double same_side = 0.99;       // cosine of the angle up to which facets may share a clump
 constexpr double small_part = 0.4;       // radius over distance, up to which moments do
 constexpr double least_scale = 0.124;    // of the parts that a facet is cut in; nearer, it is integrated
+constexpr double least_height = 1e-6;    // of a particle over a facet, in support radii
 constexpr double plane_size = 1e6;       // half of it, in support radii: what stands for infinite
 
 const Gauss<6> coarse;
@@ -24,8 +25,11 @@ const Gauss<16> fine;
 /// std::hypot takes care of overflow, which costs a sixth of the wall's share in a step.
 double length_of(double a, double b) { return std::sqrt(a * a + b * b); }
 
-/// The angle (rad) under which a line's part t0..t1 is seen from a point at the distance p.
-double angle_of(double p, double t0, double t1) { return std::atan2(p * (t1 - t0), p * p + t0 * t1); }
+/// The angle (rad) under which a line's part t0..t1 is seen from a point at the distance p, positive for −0, too.
+double angle_of(double p, double t0, double t1) {
+  const double angle = std::atan2(std::abs(p) * (t1 - t0), p * p + t0 * t1);
+  return p < 0 ? -angle : angle;
+}
 
 /// An edge seen from the foot of a particle: how far inwards of the edge's line it is, and the edge along that (m).
 template <int Dim> struct EdgeSeen {
@@ -212,6 +216,7 @@ template <int Dim>
 WallIntegrals<Dim>::WallIntegrals(const std::vector<Wall<Dim>>& walls, const WallSurface<Dim>& surface,
                                   KernelKind kernel, double smoothing_length)
     : radial_(kernel, Dim, smoothing_length) {
+  if constexpr (Dim == 3) across_ = EdgeIntegrals(radial_);
   Builder(*this, surface).run();
   facets_ = sheets_.size();
   add_planes(walls);
@@ -349,72 +354,90 @@ void WallIntegrals<Dim>::add_part(Sum& sum, const Sheet& sheet, const Point<Dim>
 
 template <int Dim>
 void WallIntegrals<Dim>::add_exact(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const {
-  const double least = 1e-6 * reach(), height = std::abs(d) < least ? std::copysign(least, d) : d;
-  const double radius2 = reach() * reach() - height * height;  // of the disc that the support cuts out of the plane
-  const Point<Dim> foot = x - d * sheet.normal;
-  const auto at_foot = std::abs(height);
-  if constexpr (Dim == 2) {
-    const Edge& e = edges_[sheet.edges_begin];
-    double from, to;
-    const double t0 = e.along.dot(e.start - foot);
-    if (!clip(radius2, t0, t0 + e.length, from, to)) return;
-    const auto r = [&](double t) { return length_of(height, t); };
-    sum.weight += fine(from, to, [&](double t) { return radial_.kernel(r(t)); });
-    sum.moment += (radial_.weight_beyond(r(from)) - radial_.weight_beyond(r(to))) * e.along;
-    sum.hidden += std::copysign(1.0, height) * fine(std::atan(from / at_foot), std::atan(to / at_foot), [&](double a) {
-                    return radial_.weight_beyond(at_foot / std::cos(a));
-                  });
-  } else {
-    // ∫ Q dA = ∮ (P(foot) − P) p/ρ² dt and ∫ Q ρ dA = −∮ P ν dt, with P = ∫_ρ Q s ds, over the polygon's edges
-    const double weight = radial_.weight_beyond(at_foot), hidden = radial_.hidden_beyond(at_foot) / at_foot;
-    double angle;  // under which what the support leaves of the edges is seen
-    if (!angle_left(sheet, foot, radius2, angle)) return;
-    for (std::uint32_t k = sheet.edges_begin; k < sheet.edges_end; ++k) {
-      const Edge& e = edges_[k];
-      const EdgeSeen<3> seen(e, foot);
-      const double p = seen.p;
-      double from, to;
-      if (e.cancels || !clip(radius2 - p * p, seen.t0, seen.t1, from, to)) continue;
-      double inside_weight = 0, inside_hidden = 0, edge_weight = 0;
-      const auto integrate = [&](const auto& rule) {
-        const double half = (to - from) / 2, middle = (to + from) / 2;
-        for (std::size_t g = 0; g < rule.node.size(); ++g) {
-          const double t = middle + half * rule.node[g], rho2 = std::max(p * p + t * t, least * least);
-          const double r = std::sqrt(height * height + rho2), beyond = radial_.weight_beyond(r);
-          inside_weight += rule.weight[g] * half * p / rho2 * (weight - beyond);
-          inside_hidden += rule.weight[g] * half * p / rho2 * (hidden - radial_.hidden_beyond(r) / r);
-          edge_weight += rule.weight[g] * half * beyond;
-        }
-      };
-      if (to - from < 1.5 * length_of(height, p))
-        integrate(coarse);
-      else
-        integrate(fine);
-      sum.weight += inside_weight;
-      sum.hidden += height * inside_hidden;
-      sum.moment -= edge_weight * e.outward;
-    }
-    sum.weight += weight * angle;
-    sum.hidden += height * hidden * angle;
-  }
+  const double least = least_height * reach(), height = std::abs(d) < least ? std::copysign(least, d) : d;
+  const Foot foot{x - d * sheet.normal, height, reach() * reach() - height * height};
+  if constexpr (Dim == 2)
+    add_segment(sum, edges_[sheet.edges_begin], foot);
+  else if (!misses(sheet, foot))
+    add_polygon(sum, sheet, foot);
 }
 
-/// The angle under which the foot of a particle sees what its support leaves of a convex sheet's edges; false if the
-/// two have nothing in common. All edges together go once round a foot inside, so what the support cuts out of them
-/// tells: fewer angles, and a foot on an edge between two sheets is inside of both or of none without harm.
-template <int Dim>
-bool WallIntegrals<Dim>::angle_left(const Sheet& sheet, const Point<Dim>& foot, double radius2, double& angle) const {
+template <int Dim> void WallIntegrals<Dim>::add_segment(Sum& sum, const Edge& e, const Foot& foot) const {
+  double from, to;
+  const double t0 = e.along.dot(e.start - foot.place), h = std::abs(foot.height);
+  if (!clip(foot.radius2, t0, t0 + e.length, from, to)) return;
+  const auto r = [&](double t) { return length_of(h, t); };
+  sum.weight += fine(from, to, [&](double t) { return radial_.kernel(r(t)); });
+  sum.moment += (radial_.weight_beyond(r(from)) - radial_.weight_beyond(r(to))) * e.along;
+  sum.hidden += std::copysign(1.0, foot.height) * fine(std::atan(from / h), std::atan(to / h), [&](double a) {
+                  return radial_.weight_beyond(h / std::cos(a));
+                });
+}
+
+/// ∫ Q dA = ∮ (P(foot) − P) p/ρ² dt and ∫ Q ρ dA = −∮ P ν dt, with P = ∫_ρ Q s ds, over the edges. All of them together
+/// go once round a foot inside: so a foot on an edge between two sheets is inside of both or of none without harm.
+template <int Dim> void WallIntegrals<Dim>::add_polygon(Sum& sum, const Sheet& sheet, const Foot& foot) const {
   bool inside = true;
-  double within = 0;
+  double within = 0;  // the angle (rad) under which the foot sees what the support cuts out of edges
   for (std::uint32_t k = sheet.edges_begin; k < sheet.edges_end; ++k) {
-    const auto [p, t0, t1] = EdgeSeen<Dim>(edges_[k], foot);
-    if (p < 0 && p * p >= radius2) return false;
+    const Edge& e = edges_[k];
+    const auto [p, t0, t1] = EdgeSeen<Dim>(e, foot.place);
     inside = inside && p >= 0;
     double from, to;
-    if (clip(radius2 - p * p, t0, t1, from, to)) within += angle_of(p, from, to);
+    if (!clip(foot.radius2 - p * p, t0, t1, from, to)) continue;
+    if (!e.cancels && from > t0 && to < t1) {
+      take_off_beyond(sum, e, foot, p);
+      continue;
+    }
+    within += angle_of(p, from, to);
+    if (!e.cancels) add_along(sum, e, foot, p, from, to);
   }
-  angle = (inside ? 2 * std::numbers::pi : 0) - within;
-  return true;
+  const double angle = (inside ? 2 * std::numbers::pi : 0) - within, h = std::abs(foot.height);
+  sum.weight += radial_.weight_beyond(h) * angle;
+  sum.hidden += std::copysign(radial_.hidden_beyond(h), foot.height) * angle;
+}
+
+/// What is beyond an edge that crosses the whole support.
+template <int Dim> void WallIntegrals<Dim>::take_off_beyond(Sum& sum, const Edge& e, const Foot& foot, double p) const {
+  const EdgeIntegrals::Beyond beyond = across_.beyond(std::abs(foot.height), std::abs(p));
+  const double side = p < 0 ? -1 : 1;
+  sum.weight -= side * beyond.weight;
+  sum.hidden -= side * std::copysign(beyond.hidden, foot.height);
+  sum.moment -= beyond.along * e.outward;
+}
+
+/// ∮ (P(foot) − P) p/ρ² dt and −∮ P ν dt over a part of an edge.
+template <int Dim>
+void WallIntegrals<Dim>::add_along(Sum& sum, const Edge& e, const Foot& foot, double p, double from, double to) const {
+  const double least = least_height * reach(), h = foot.height, at_foot = std::abs(h);
+  const double most_weight = radial_.weight_beyond(at_foot), most_hidden = radial_.hidden_beyond(at_foot) / at_foot;
+  double weight = 0, hidden = 0, moment = 0;
+  const auto integrate = [&](const auto& rule) {
+    const double half = (to - from) / 2, middle = (to + from) / 2;
+    for (std::size_t g = 0; g < rule.node.size(); ++g) {
+      const double t = middle + half * rule.node[g], rho2 = std::max(p * p + t * t, least * least);
+      const double r = std::sqrt(h * h + rho2), beyond = radial_.weight_beyond(r);
+      weight += rule.weight[g] * half * p / rho2 * (most_weight - beyond);
+      hidden += rule.weight[g] * half * p / rho2 * (most_hidden - radial_.hidden_beyond(r) / r);
+      moment += rule.weight[g] * half * beyond;
+    }
+  };
+  if (to - from < 1.5 * length_of(h, p))
+    integrate(coarse);
+  else
+    integrate(fine);
+  sum.weight += weight;
+  sum.hidden += h * hidden;
+  sum.moment -= moment * e.outward;
+}
+
+/// Does a disc in its plane have nothing in common with a convex sheet, seen from one edge?
+template <int Dim> bool WallIntegrals<Dim>::misses(const Sheet& sheet, const Foot& foot) const {
+  for (std::uint32_t k = sheet.edges_begin; k < sheet.edges_end; ++k) {
+    const double p = edges_[k].outward.dot(edges_[k].start - foot.place);
+    if (p < 0 && p * p >= foot.radius2) return true;
+  }
+  return false;
 }
 
 template <int Dim>
@@ -442,6 +465,7 @@ template <int Dim> std::int32_t WallIntegrals<Dim>::plane_near(const Point<Dim>&
   std::int32_t found = no_plane;
   const auto look = [&](const Sheet& sheet) {
     const double gap = reach + sheet.radius;
+    if (std::abs(sheet.normal.dot(x) - planes_[sheet.plane].offset) > reach) return;  // so are most sheets of a box
     if (found == many_planes || (sheet.centre - x).squaredNorm() > gap * gap || distance(sheet, x, false) > reach)
       return;
     const bool ends = distance(sheet, x, true) < reach;

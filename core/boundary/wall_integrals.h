@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/boundary/edge_integrals.h"
 #include "core/boundary/facet_grid.h"
 #include "core/boundary/radial_integrals.h"
 #include "core/boundary/wall_patch.h"
@@ -35,16 +36,15 @@ template <int Dim> class WallIntegrals {
   /// Calls visit(patch) for each patch in the support of x.
   template <class Visit> void visit(const Point<Dim>& x, Visit&& visit) const;
 
-  /// The whole of a plane as a piece; its weight is 0 behind the plane and beyond the support.
-  WallPiece<Dim> at_plane(std::int32_t plane, const Point<Dim>& x) const {
-    const Plane& p = planes_[static_cast<std::size_t>(plane)];
-    const double d = p.normal.dot(x) - p.offset;
-    const bool near = d > 0 && d < reach();
-    return {p.normal, near ? radial_.plane_weight(d) : 0, near ? radial_.plane_hidden(d) : 0, d, p.wall};
-  }
-
-  const Point<Dim>& normal(std::int32_t plane) const { return planes_[static_cast<std::size_t>(plane)].normal; }
-  std::int32_t wall(std::int32_t plane) const { return planes_[static_cast<std::size_t>(plane)].wall; }
+  /// A plane that ends nowhere near.
+  struct Plane {
+    Point<Dim> normal;
+    double offset;  // m, normal · any point
+    std::int32_t wall;
+  };
+  const Plane& plane(std::int32_t number) const { return planes_[static_cast<std::size_t>(number)]; }
+  /// Of the whole of a plane, at a height (m) over it.
+  RadialIntegrals::Plane of_plane(double height) const { return radial_.plane(height); }
 
   static constexpr std::int32_t no_plane = -1, many_planes = -2;
   /// The only plane that is within `reach` (m) of x and goes on without an edge there; or no plane; or many.
@@ -78,14 +78,13 @@ template <int Dim> class WallIntegrals {
     Turn<Dim> spread;  // as a sheet's
     std::uint32_t sheets_begin, sheets_end;
   };
-  struct Plane {
-    Point<Dim> normal;
-    double offset;  // m, normal · any point
-    std::int32_t wall;
-  };
   struct Sum {
     double weight = 0, hidden = 0;
     Point<Dim> moment = Point<Dim>::Zero();  // ∫ W x dS in the plane
+  };
+  struct Foot {  // of a particle in the plane of a sheet
+    Point<Dim> place;
+    double height, radius2;  // m, of the particle over it; m², of the disc that the support cuts out of the plane
   };
   class Builder;
 
@@ -96,10 +95,15 @@ template <int Dim> class WallIntegrals {
   void add(PatchSums<Dim>& sums, const Sheet& sheet, bool whole, const Point<Dim>& x) const;
   void add_part(Sum& sum, const Sheet& sheet, const Point<Dim>& centre, double scale, const Point<Dim>& x) const;
   void add_exact(Sum& sum, const Sheet& sheet, const Point<Dim>& x, double d) const;
-  bool angle_left(const Sheet& sheet, const Point<Dim>& foot, double radius2, double& angle) const;
+  void add_segment(Sum& sum, const Edge& edge, const Foot& foot) const;
+  void add_polygon(Sum& sum, const Sheet& sheet, const Foot& foot) const;
+  void take_off_beyond(Sum& sum, const Edge& edge, const Foot& foot, double p) const;
+  void add_along(Sum& sum, const Edge& edge, const Foot& foot, double p, double from, double to) const;
+  bool misses(const Sheet& sheet, const Foot& foot) const;
   double distance(const Sheet& sheet, const Point<Dim>& x, bool outer_edges_alone) const;
 
   RadialIntegrals radial_;
+  EdgeIntegrals across_;       // 3-D
   FacetGrid<Dim> grid_;        // of the clumps
   std::vector<Clump> clumps_;  // of facets
   std::vector<Sheet> sheets_;  // by clump; what is left of infinite planes last

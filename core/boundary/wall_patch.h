@@ -9,24 +9,21 @@
 
 namespace molten {
 
-/// A plane piece within a particle's support.
-template <int Dim> struct WallPiece {
+/// A piece of a wall within a particle's support. Its facets' normals may differ a little: then the normal is their
+/// mean, weighted with W.
+template <int Dim> struct WallPatch {
   Point<Dim> normal = Point<Dim>::Zero();  // unit, into the fluid
   double weight = 0;                       // |∫ W n dS|, 1/m
   double hidden = 0;                       // the part of ∫ W dV behind the piece
   double distance = 0;                     // of the particle from it, m
   std::int32_t wall = 0;
-};
-
-/// A piece of which the facets' normals may differ a little: then the normal is their mean, weighted with W.
-template <int Dim> struct WallPatch : WallPiece<Dim> {
   Point<Dim> centroid;  // of W over the piece, from the particle, m
   Turn<Dim> moment;     // ∫ n ⊗ W y dS, y from the particle
   Turn<Dim> across;     // Σ h n ⊗ n over the facets, h: hidden behind one
 
   /// From a body's frame to one that is turned.
   void turn(const Turn<Dim>& by) {
-    this->normal = by * this->normal;
+    normal = by * normal;
     centroid = by * centroid;
     moment = by * moment * by.transpose();
     across = by * across * by.transpose();

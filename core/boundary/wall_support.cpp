@@ -11,8 +11,9 @@ namespace {
 /// both over what is left of the support, by that of the fluid.
 double stiffness_beside_plane(const RadialIntegrals& radial, double d, double h) {
   constexpr double fluid = 8;  // ν/h²; the viscous limit of the time step was measured with it
-  const double wall = 2 * radial.plane_weight(d) * h * h / d;
-  return (wall + fluid / 2) / (fluid * (1 - radial.plane_hidden(d)));
+  const RadialIntegrals::Plane plane = radial.plane(d);
+  const double wall = 2 * plane.weight * h * h / d;
+  return (wall + fluid / 2) / (fluid * (1 - plane.hidden));
 }
 
 }  // namespace

@@ -125,21 +125,19 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   template <int I> std::int32_t from_plane(std::size_t slot, std::int32_t plane, Neighbour<Lanes<Real, I>>& n) const {
     using L = Lanes<Real, I>;
     const auto x = particles_[position];
-    const Point<Dim> normal = walls_.integrals().normal(plane);
-    const std::int32_t wall = walls_.integrals().wall(plane);
-    const double pull_along = gravity_.dot(normal);
-    L pull(Real(0)), centre(Real(0));  // along the normal
-    n.weight = n.hidden = n.reach = pull;
+    const auto& [normal, offset, wall] = walls_.integrals().plane(plane);
+    Lanes<double, I> height(-offset);
+    for (int d = 0; d < Dim; ++d) height += Lanes<double, I>(normal[d]) * load<I>(x[d] + slot);
     unrolled<I>([&](auto k) {  // a lane's number has to be known, or it goes through memory
-      Point<Dim> point;
-      for (int d = 0; d < Dim; ++d) point[d] = x[d][slot + k];
-      const auto hit = walls_.integrals().at_plane(plane, point);
-      set_lane(n.weight, k, static_cast<Real>(hit.weight));
-      set_lane(n.hidden, k, static_cast<Real>(hit.hidden));
-      set_lane(n.reach, k, static_cast<Real>(hit.weight > 0 ? hit.distance : 1));
-      set_lane(pull, k, static_cast<Real>(-(hit.distance * hit.weight + hit.hidden) * pull_along));
-      set_lane(centre, k, static_cast<Real>(-hit.distance * hit.weight / 2));
+      const double distance = lane(height, k);
+      const RadialIntegrals::Plane beyond = walls_.integrals().of_plane(distance);
+      set_lane(n.weight, k, static_cast<Real>(beyond.weight));
+      set_lane(n.hidden, k, static_cast<Real>(beyond.hidden));
+      set_lane(n.reach, k, static_cast<Real>(beyond.weight > 0 ? distance : 1));
     });
+    const L moment = n.reach * n.weight;
+    const L pull = L(static_cast<Real>(-gravity_.dot(normal))) * (moment + n.hidden);
+    const L centre = L(Real(-0.5)) * moment;  // along the normal
     for (int d = 0; d < Dim; ++d) {
       n.normal[d] = L(static_cast<Real>(normal[d]));
       n.pull[d] = pull * n.normal[d];
