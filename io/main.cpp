@@ -92,7 +92,8 @@ void add_render(CLI::App& app, Commands& c) {
   render->add_option("--zoom", p.zoom, "Larger is closer")->capture_default_str()->check(CLI::Range(0.001, 1000.0));
   render->add_option("--width", p.width, "Pixels")->capture_default_str()->check(CLI::Range(16, 8192));
   render->add_option("--height", p.height, "Pixels")->capture_default_str()->check(CLI::Range(16, 8192));
-  render->add_flag("!--no-walls", p.boundaries, "Leave the walls out");
+  render->add_flag_callback(
+      "--no-walls", [&p] { p.boundaries = false; }, "Leave the walls out");
   render->callback([&] { c.chosen = [&] { return render_run(c.render); }; });
 }
 
@@ -126,6 +127,9 @@ int guarded(const std::function<ExitCode()>& f) {
 /// What is wrong with the command line, in one line.
 std::string complaint(const CLI::App* app, const CLI::Error& e) {
   const auto subcommands = app->get_subcommands();
+  const auto unknown = app->remaining();
+  if (subcommands.empty() && !unknown.empty())
+    return fmt::format("molten: {} is no command; see molten --help\n", unknown.front());
   return fmt::format("molten: {}; see molten{}{} --help\n", e.what(), subcommands.empty() ? "" : " ",
                      subcommands.empty() ? "" : subcommands.front()->get_name());
 }

@@ -35,6 +35,7 @@ TEST_F(CommandLine, MistakesAreOneLine) {
     expect_refused(o, 2, {"--help"});
     EXPECT_LT(o.err.size(), 300u) << o.err;
   }
+  expect_refused(molten_program({"bogus"}, folder.path()), 2, {"bogus is no command"});
 }
 
 TEST_F(CommandLine, HelpAndVersion) {
@@ -47,6 +48,7 @@ TEST_F(CommandLine, HelpAndVersion) {
     EXPECT_EQ(o.code, 0);
     EXPECT_TRUE(contains(o.out, command)) << o.out;
     EXPECT_EQ(o.err, "");
+    EXPECT_FALSE(contains(o.out, "{false}")) << o.out;
   }
   EXPECT_EQ(molten_program({"--version"}).out.substr(0, 8), "molten 0");
 }

@@ -269,7 +269,7 @@ TEST(SceneFile, BadOverrides) {
       {"fluid.density=-1", "--set fluid.density=-1: fluid.density: -1 is out of range"},
       {"fluid.densty=1", "fluid.densty: unknown key; did you mean density?"},
       {"fluid.density=high", "is a string"},
-      {"boundary.7.slip=0", "there are only 2"},
+      {"boundary.7.slip=0", "there are only 2, counted from 0"},
       {"boundary.first.slip=0", "first is no index"},
       {"boundary.0.slip.x=0", "plain value"},
       {"scene.gravity.3=0", "there are only 3"},

@@ -77,7 +77,9 @@ toml::node* element(toml::array& array, const std::string& text, const std::stri
   if (error != std::errc() || end != index.data() + index.size()) {
     fail_override(text, fmt::format("{} is no index; count the entries from 0", shown(index)));
   }
-  if (at >= array.size()) fail_override(text, fmt::format("there are only {}; count them from 0", array.size()));
+  if (at >= array.size())
+    fail_override(text,
+                  fmt::format("there {} only {}, counted from 0", array.size() == 1 ? "is" : "are", array.size()));
   return array.get(at);
 }
 
