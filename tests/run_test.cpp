@@ -187,7 +187,7 @@ TEST_P(Resume, FromBetweenFramesAndWithOtherThreadsIsTheSameToo) {
 TEST_P(Resume, EveryFewStepsIsTheSameToo) {
   const Variant v = GetParam();
   const Bench bench(full_scene(v.dimensions, v.precision, v.integrator, v.more));
-  constexpr int first = 100, every = 3, last = 340;
+  constexpr int first = 100, every = 7, last = 338;
   ASSERT_EQ(bench.start("whole", {"--set", fmt::format("run.max_steps={}", last)}).code, 0);
   ASSERT_EQ(bench.start("pieces", {"--set", fmt::format("run.max_steps={}", first)}).code, 0);
   for (int steps = first + every; steps <= last; steps += every)
