@@ -24,6 +24,7 @@ Setup dam_break(const DamBreak& d) {
             "[numerics]\n" + std::string(impact_text) + wall_support_text(0.2);
   if (d.gate > 0) s.scene += gate_text(d.column[0], d.column[1] + 5 * d.spacing, d.spacing, d.gate);
   s.start = lattice(d.dimensions, {}, size, d.spacing);
+  stagger(s.start, d.stagger);
   perturb(s.start, d.dimensions, d.perturbation);
   for (const Triple& x : s.start.position) s.pressure.push_back(density * gravity * (size[up] - x[up]));
   return s;

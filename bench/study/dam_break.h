@@ -13,6 +13,7 @@ struct DamBreak {
   double slip = 1;          // of the walls
   double gate = 0;          // speed at which a gate before the column rises, m/s; 0: none. In 2-D
   double perturbation = 0;  // width of the random displacements at the start, spacings
+  double stagger = 0;       // in 3-D: width of the displacements of slices, spacings
 };
 
 /// At rest, with hydrostatic pressure.

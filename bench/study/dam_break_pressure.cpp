@@ -64,8 +64,8 @@ double mirrored(double x) { return kleefsman_tank[0] - x; }
 
 Setup kleefsman_setup(const Request& r) {
   const double volume = kleefsman_water[0] * kleefsman_water[1] * kleefsman_water[2];
-  DamBreak d{3, kleefsman_water,  kleefsman_tank, std::cbrt(volume / static_cast<double>(r.size)), r["slip"],
-             0, r["perturbation"]};
+  DamBreak d{3, kleefsman_water,   kleefsman_tank, std::cbrt(volume / static_cast<double>(r.size)), r["slip"],
+             0, r["perturbation"], r["stagger"]};
   Setup s = dam_break(d);
   s.scene += fmt::format("[[boundary]]\nbox = {{ min = [{}, 0.2985, -0.1], max = [{}, 0.7015, 0.161] }}\nslip = {}\n",
                          mirrored(0.8245), mirrored(0.8245 - 0.161), r["slip"]);
@@ -144,7 +144,8 @@ Case kleefsman() {
       500,
       {{"end_time", 2, "s; the experiment has 6"},
        {"slip", 1, "of the walls: 1 free slip, 0 no-slip"},
-       perturbation_parameter()},
+       perturbation_parameter(),
+       {"stagger", 0.5, "width of the displacements along the tank of the slices across it at the start, spacings"}},
       run_kleefsman};
 }
 

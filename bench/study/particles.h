@@ -33,6 +33,16 @@ inline void perturb(Start& start, int dimensions, double width) {
       x[d] += width * start.spacing * (static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5);
 }
 
+/// Moves the slices of a lattice across y along x, by at most half `width` (spacings) and each by another way, so that
+/// they do not arrive anywhere together.
+inline void stagger(Start& start, double width) {
+  constexpr double golden = 0.6180339887498949;  // parts of its multiples are spread evenly, also over a few slices
+  for (Triple& x : start.position) {
+    const double turns = std::floor(x[1] / start.spacing) * golden;
+    x[0] += width * start.spacing * (turns - std::floor(turns) - 0.5);
+  }
+}
+
 /// Gives every particle the velocity (m/s) of its place.
 inline void set_velocity(Start& start, const std::function<Triple(const Triple&)>& of) {
   for (std::size_t k = 0; k < start.position.size(); ++k) start.velocity[k] = of(start.position[k]);
