@@ -21,7 +21,7 @@ class EdgeIntegrals {
     double hidden;  // h ∫ H dS: the part of ∫ W dV behind that half
     double along;   // ∫ ∫_r^R W s ds dt along the edge, which is the moment ∫ W x dS across it
   };
-  /// h and p: m, not below 0. Good to 1e-5 of what a plane through the particle has.
+  /// h and p: m, not below 0. Good to 4e-5 of what a plane through the particle has.
   Beyond beyond(double h, double p) const;
 
  private:

@@ -36,14 +36,14 @@ template <int Dim> class WallIntegrals {
   /// Calls visit(patch) for each patch in the support of x.
   template <class Visit> void visit(const Point<Dim>& x, Visit&& visit) const;
 
-  /// A plane that ends nowhere near.
+  /// What facets lie in side by side.
   struct Plane {
     Point<Dim> normal;
     double offset;  // m, normal · any point
     std::int32_t wall;
   };
   const Plane& plane(std::int32_t number) const { return planes_[static_cast<std::size_t>(number)]; }
-  /// Of the whole of a plane, at a height (m) over it.
+  /// Of a plane without an edge near, at a height (m) over it.
   RadialIntegrals::Plane of_plane(double height) const { return radial_.plane(height); }
 
   static constexpr std::int32_t no_plane = -1, many_planes = -2;
