@@ -3,6 +3,7 @@
 // positions refer to.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -28,6 +29,8 @@ template <int Dim> using Cell = std::array<std::int32_t, Dim>;  // column indice
 
 template <int Dim> struct Grid {
   static constexpr int along = Dim - 1;  // the axis of the columns
+  /// Columns across a strip of them: three rows of one, which is what a row's particles meet, stay in a core's cache.
+  static constexpr std::size_t strip_width = 6;
 
   std::array<double, Dim> lower{}, width{};  // m; of a column across, of a segment along
   std::array<std::int32_t, Dim> cells{};
@@ -39,16 +42,19 @@ template <int Dim> struct Grid {
     if (!(k > 0)) return 0;  // not a number, too
     return k >= cells[d] ? cells[d] - 1 : static_cast<std::int32_t>(k);
   }
-  std::size_t columns() const {
-    std::size_t n = 1;
-    for (int d = 0; d < along; ++d) n *= static_cast<std::size_t>(cells[d]);
-    return n;
+  std::size_t columns() const { return static_cast<std::size_t>(cells[0]) * rows(); }
+  /// Number of the column of a cell: strip after strip, in each row after row, x fastest.
+  std::size_t column(const Cell<Dim>& cell) const {
+    const std::size_t x = static_cast<std::size_t>(cell[0]), first = x / strip_width * strip_width;
+    std::size_t row = 0;
+    if constexpr (along > 1) row = static_cast<std::size_t>(cell[1]);
+    return first * rows() + row * across_strip(first) + (x - first);
   }
-  /// Number of the column of a cell; x fastest.
-  template <class C> std::size_t column(const C& cell) const {
-    std::size_t n = 0;
-    for (int d = along - 1; d >= 0; --d) n = n * cells[d] + cell[d];
-    return n;
+  /// Puts where column n is into a cell, whose segment it leaves.
+  void place(std::size_t n, Cell<Dim>& cell) const {
+    const std::size_t first = n / (strip_width * rows()) * strip_width, rest = n - first * rows();
+    cell[0] = static_cast<std::int32_t>(first + rest % across_strip(first));
+    if constexpr (along > 1) cell[1] = static_cast<std::int32_t>(rest / across_strip(first));
   }
   double origin(int d, std::int32_t cell) const { return lower[d] + (cell + 0.5) * width[d]; }
 
@@ -59,6 +65,13 @@ template <int Dim> struct Grid {
   }
   /// Where a cell `offset` cells further along axis d has its origin (m).
   double shift(int d, int offset) const { return on_quantum(offset * width[d]); }
+
+ private:
+  std::size_t rows() const { return along > 1 ? static_cast<std::size_t>(cells[along - 1]) : 1; }
+  /// Columns across the strip that begins with this one; the last may be narrower.
+  std::size_t across_strip(std::size_t first) const {
+    return std::min(strip_width, static_cast<std::size_t>(cells[0]) - first);
+  }
 };
 
 }  // namespace molten

@@ -293,10 +293,7 @@ std::unique_ptr<std::int32_t[]> Neighbours<Dim, Real>::cluster_order(std::size_t
   for_each_piece((columns + 63) / 64, [&](std::size_t group) {
     for (std::size_t c = group * 64; c < std::min(columns, (group + 1) * 64); ++c) {
       Cell<Dim> cell{};
-      for (std::size_t d = 0, rest = c; d < Grid<Dim>::along; ++d) {
-        cell[d] = static_cast<std::int32_t>(rest % order_.grid.cells[d]);
-        rest /= order_.grid.cells[d];
-      }
+      order_.grid.place(c % order_.grid.columns(), cell);
       std::uint32_t cluster = cluster_begin[c];
       for (std::uint32_t k = entry_begin_[c]; k < entry_begin_[c + 1]; ++cluster) {
         const std::uint32_t next = cluster_end(k, entry_begin_[c + 1]);

@@ -116,6 +116,25 @@ template <int Dim, class Real> void expect_good(Cloud<Dim, Real>& c) {
 template <class F> class NeighboursOf : public testing::Test {};
 TYPED_TEST_SUITE(NeighboursOf, Flavours, FlavourNames);
 
+/// Every column has one number and one place, and a row of a strip follows on the one before it.
+TEST(Grid, NumbersItsColumnsStripByStrip) {
+  for (const std::int32_t across : {1, 5, 6, 7, 12, 20}) {
+    Grid<3> grid;
+    grid.cells = {across, 9, 4};
+    Cell<3> before{};
+    for (std::size_t n = 0; n < grid.columns(); ++n) {
+      Cell<3> cell{-1, -1, 3};
+      grid.place(n, cell);
+      ASSERT_EQ(grid.column(cell), n);
+      ASSERT_TRUE(cell[0] >= 0 && cell[0] < across && cell[1] >= 0 && cell[1] < 9 && cell[2] == 3) << n;
+      const auto strip = [](const Cell<3>& c) { return c[0] / static_cast<int>(Grid<3>::strip_width); };
+      ASSERT_GE(strip(cell), strip(before)) << n;
+      if (strip(cell) == strip(before)) ASSERT_LE(cell[1] - before[1], 1) << n;
+      before = cell;
+    }
+  }
+}
+
 TYPED_TEST(NeighboursOf, Lattice) {
   MOLTEN_FLAVOUR;
   Cloud<Dim, Real> c(cube<Dim>(Dim == 2 ? 25 : 10, 0.1), 0.1, domain_between<Dim>(-10, 10));

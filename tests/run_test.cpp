@@ -276,11 +276,11 @@ TEST(ResumeRefuses, CheckpointsOfAnotherFormat) {
   for (const fs::path& file : list_checkpoints(bench.run("a"))) {
     std::string bytes = read_bytes(file);
     const std::string mark = "molten checkpoint, format ";
-    ASSERT_TRUE(bytes.starts_with(mark + "4\n"));
+    ASSERT_TRUE(bytes.starts_with(mark + "5\n"));
     bytes[mark.size()] = '1';
     write_bytes(file, bytes);
   }
-  expect_refused(bench.resume("a"), 6, {"is of format 1", "reads format 4", "run the scene anew"});
+  expect_refused(bench.resume("a"), 6, {"is of format 1", "reads format 5", "run the scene anew"});
 }
 
 TEST(ResumeRefuses, AFolderWithoutCheckpoints) {

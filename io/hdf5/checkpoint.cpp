@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* kind = "checkpoint";
-constexpr int format_version = 4;  // raise it when what is archived changes
+constexpr int format_version = 5;  // raise it when what is archived changes
 
 fs::path folder_of(const fs::path& run_folder) { return run_folder / "checkpoints"; }
 
