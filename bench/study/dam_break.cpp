@@ -68,7 +68,7 @@ void judge_series(Report& report, const std::string& name, const Series& run, co
     return;
   }
   const double duration = experiment.at.back();
-  const double shift = best_shift(run, experiment, 0.3 * duration);
+  const double shift = best_shift(0.3 * duration, [&](double s) { return relative_rms(run, experiment, s); });
   report.judge(name + "_raw", relative_rms(run, experiment));
   report.judge(name + "_shifted", relative_rms(run, experiment, shift));
   report.judge(name + "_time_shift", shift / duration);

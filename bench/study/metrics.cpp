@@ -51,12 +51,12 @@ double mean_deviation(const Series& run, const Series& reference) {
   return error.l1();
 }
 
-double best_shift(const Series& run, const Series& reference, double most) {
+double best_shift(double most, const std::function<double(double shift)>& error) {
   constexpr int parts = 1000;
-  double best = 0, least = relative_rms(run, reference);
+  double best = 0, least = error(0);
   for (int k = -parts; k <= parts; ++k) {
-    const double error = relative_rms(run, reference, most * k / parts);
-    if (error < least) least = error, best = most * k / parts;
+    const double shift = most * k / parts, here = error(shift);
+    if (here < least) least = here, best = shift;
   }
   return best;
 }

@@ -27,8 +27,8 @@ struct Series {
 double relative_rms(const Series& run, const Series& reference, double shift = 0);
 /// Mean of |run(t) − reference(t)| over the mean of |reference|.
 double mean_deviation(const Series& run, const Series& reference);
-/// The shift in [−most, most] with the least relative rms: by how much an experiment lags, as gates take time to open.
-double best_shift(const Series& run, const Series& reference, double most);
+/// The shift in [−most, most] with the least error: by how much an experiment lags, as gates take time to open.
+double best_shift(double most, const std::function<double(double shift)>& error);
 
 /// Σ|value − exact| / Σ|exact| and √(Σ(value − exact)² / Σ exact²) over particles.
 class FieldError {
