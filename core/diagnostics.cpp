@@ -96,13 +96,14 @@ std::vector<std::string> available_fields(const Features& f) {
   return names;
 }
 
-void require_fields(const Features& features, const std::vector<std::string>& names) {
+void require_fields(const Scene& scene, const Features& features) {
   const std::vector<std::string> available = available_fields(features);
-  for (const std::string& name : names)
+  for (const std::string& name : scene.output.fields)
     if (std::find(available.begin(), available.end(), name) == available.end())
-      throw Error(ExitCode::usage, "output.fields: this scene has no field '" + name + "'; it has " +
-                                       std::accumulate(available.begin() + 1, available.end(), available[0],
-                                                       [](auto a, auto& b) { return a + ", " + b; }));
+      refuse(scene, "output.fields",
+             "this scene has no field '" + name + "'; it has " +
+                 std::accumulate(available.begin() + 1, available.end(), available[0],
+                                 [](auto a, auto& b) { return a + ", " + b; }));
 }
 
 namespace {

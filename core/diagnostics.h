@@ -37,8 +37,8 @@ template <int Dim> std::vector<SnapshotBody> snapshots_of(const Bodies<Dim>& bod
 
 /// Names of what a snapshot of this run can hold.
 std::vector<std::string> available_fields(const Features& features);
-/// Throws Error(usage) for a name that is none of them.
-void require_fields(const Features& features, const std::vector<std::string>& names);
+/// Throws Error(usage) for one of output.fields that is none of them.
+void require_fields(const Scene& scene, const Features& features);
 
 /// Directed pairs within the support, self excluded.
 template <int Dim, class Real> std::int64_t count_pairs(const State<Dim, Real>& s);

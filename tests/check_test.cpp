@@ -78,6 +78,17 @@ TEST_F(CheckTest, RefusesAVentOutsideTheDomain) {
              {"vent: reaches x = 2.96 m, outside scene.domain, which is from -1 to 2 m there"});
 }
 
+TEST_F(CheckTest, RefusesAVentThatWaitsInTheFluid) {
+  const auto with_vent = [](double height) {
+    return replaced(
+        block_scene, "[run]",
+        fmt::format("[[vent]]\ndisc = {{ centre = [0.1, {}], normal = [0, 1], radius = 0.05 }}\nrate = 0\n[run]",
+                    height));
+  };
+  expect_bad(with_vent(0.15), 3, {"vent: ", "particles of the fluid start where the vent's own wait"});
+  EXPECT_EQ(run(with_vent(0.02)).code, 0) << "below the fluid, at its surface";
+}
+
 TEST_F(CheckTest, RefusesPeriodsInWhichAParticleMeetsItself) {
   const std::string domain = "[scene]\nperiodic = [\"x\"]\ndomain = { min = [0, -1], max = [0.12, 2] }\n";
   expect_bad(replaced(block_scene, "[scene]\n", domain), 2, {"scene.domain", "twice the support"});

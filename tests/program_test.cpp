@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tests/program.h"
+#include "tests/small_files_only.h"
 
 namespace molten {
 namespace {
@@ -227,6 +228,8 @@ TEST_F(Commands, RenderDraws) {
   }
   expect_refused(molten_program({"render", out.string(), "--frames", "9"}), 2, {"frames 0 to 2"});
   expect_refused(molten_program({"render", out.string(), "--field", "colour"}), 2, {"colour"});
+  expect_refused(molten_program({"render", out.string(), "--range", "1,1"}), 2, {"--range 1 1"});
+  expect_refused(molten_program({"render", out.string(), "--frames", "0:2:0"}), 2, {"--frames 0:2:0"});
 }
 
 TEST_F(Commands, CompareTellsRunsApart) {
@@ -259,6 +262,16 @@ TEST_F(Commands, OneProcessAtATimeRunsInAFolder) {
   program.kill(SIGKILL);
   program.wait();
   EXPECT_EQ(molten_program({"resume", out.string(), "--set", "run.end_time=0.0001"}).code, 0) << "the lock outlived it";
+}
+
+TEST_F(Commands, AFileBeyondItsLimitIsAnErrorOfWriting) {
+  Outcome o;
+  {
+    const SmallFilesOnly limit(20000);
+    o = run(replaced(block_scene, "spacing = 0.02", "spacing = 0.005"));
+  }
+  EXPECT_EQ(o.code, 5) << o.signal << o.err;
+  EXPECT_TRUE(contains(o.err, "molten: ") && contains(o.err, "File too large")) << o.err;
 }
 
 TEST_F(Commands, ASecondSignalEndsAtOnce) {

@@ -233,8 +233,8 @@ TEST_P(Signal, StopsCleanlyAndTheResumedRunIsTheUninterruptedOne) {
   expect_same_run(bench.run("whole"), bench.run("stopped"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Either, Signal, ::testing::Values(SIGTERM, SIGINT, SIGHUP), [](const auto& info) {
-  return info.param == SIGTERM ? "Term" : info.param == SIGINT ? "Int" : "Hup";
+INSTANTIATE_TEST_SUITE_P(Either, Signal, ::testing::Values(SIGTERM, SIGINT, SIGHUP, SIGXCPU), [](const auto& info) {
+  return info.param == SIGTERM ? "Term" : info.param == SIGINT ? "Int" : info.param == SIGHUP ? "Hup" : "CpuLimit";
 });
 
 // ---- bad checkpoints and changed scenes -----------------------------------------------------------------------------
@@ -268,7 +268,12 @@ TEST(ResumeFallsBack, ToTheCheckpointBeforeADamagedOneAndSaysSo) {
 TEST(ResumeFallsBack, OntoNothingWhenAllAreDamaged) {
   const Finished bench;
   for (const fs::path& file : list_checkpoints(bench.run("a"))) damage(file);
-  expect_refused(bench.resume("a"), 6, {list_checkpoints(bench.run("a")).at(0).string(), "checksum"});
+  expect_refused(
+      bench.resume("a"), 6,
+      {list_checkpoints(bench.run("a")).at(0).string(), "checksum", "no older checkpoint is whole", "--overwrite"});
+  const Outcome info = molten_program({"info", bench.run("a").string()});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_TRUE(contains(info.err, "warning: ") && contains(info.err, "checksum")) << info.err;
 }
 
 TEST(ResumeRefuses, CheckpointsOfAnotherFormat) {
@@ -317,6 +322,19 @@ TEST(ResumeAccepts, AnotherEndTimeAndOutputAndKeepsThem) {
   EXPECT_EQ(read_frame(frames.back().file).fields.size(), 1u);
   EXPECT_EQ(bench.resume("a").code, 0);  // there is nothing left to do
   EXPECT_EQ(list_frames(bench.run("a")).size(), 4u);
+}
+
+TEST(ResumeAccepts, FramesAndRowsThatWereTakenAwayAndSaysSo) {
+  const Finished bench;
+  fs::remove_all(bench.run("a") / "frames");
+  const fs::path series = bench.run("a") / "series.csv";
+  const std::string rows = read_bytes(series);
+  write_bytes(series, rows.substr(0, rows.size() - 5));
+  const Outcome o = bench.resume("a", {"--set", "run.end_time=0.06"});
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_TRUE(contains(o.err, "frames: 3 of the 3 frames so far are not there")) << o.err;
+  EXPECT_TRUE(contains(o.err, "series.csv: 1 of the 3 rows so far are not there")) << o.err;
+  EXPECT_EQ(list_frames(bench.run("a")).size(), 1u);
 }
 
 /// Times of a run's rows, which must never go back.

@@ -116,6 +116,28 @@ void require_no_support(const Scene& scene, const Vent& vent, const VentPatch<Di
                               name_of(scene, vent), support));
 }
 
+/// The layers that wait, `depth` (m) behind the plane, are fluid already.
+template <int Dim>
+void require_no_fluid_behind(const Scene& scene, const Start& start, const Vent& vent, const VentPatch<Dim>& patch,
+                             double depth) {
+  const double spacing = start.spacing;
+  const auto waits_at = [&](const Point<Dim>& x) {
+    const double ahead = x.dot(patch.normal);
+    if (ahead > spacing / 4 || ahead < -depth) return false;
+    const Point<Dim> across = x - ahead * patch.normal;
+    return std::any_of(patch.offsets.begin(), patch.offsets.end(),
+                       [&](const Point<Dim>& offset) { return (across - offset).norm() < spacing / 2; });
+  };
+  const auto inside = std::count_if(start.position.begin(), start.position.end(), [&](const auto& place) {
+    return waits_at(Point<Dim>(place.data()) - patch.centre);
+  });
+  if (inside > 0)
+    throw Error(ExitCode::geometry,
+                fmt::format("{}: {} particles of the fluid start where the vent's own wait, up to {:.4g} m behind its "
+                            "plane; move the vent to the fluid's surface, or the fluid away",
+                            name_of(scene, vent), inside, depth));
+}
+
 /// What leaves the domain is taken out.
 template <int Dim>
 void require_in_domain(const Scene& scene, const Vent& vent, const VentPatch<Dim>& patch, const Domain<Dim>& domain) {
@@ -175,13 +197,14 @@ void describe_vents(const Scene& scene, Start& start) {
 template <int Dim>
 void require_open_vents(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls,
                         const Contact<Dim>& contact) {
-  const Vents<Dim> vents = build_vents<Dim>(scene, start, start.spacing);
-  require_apart(scene, vents, start.spacing);
   const Parameters<Dim> parameters = parameters_of<Dim>(scene, start);
+  const Vents<Dim> vents = build_vents<Dim>(scene, start, parameters.support_radius);
+  require_apart(scene, vents, start.spacing);
   for (std::size_t k = 0; k < vents.count(); ++k) {
     const VentPatch<Dim>& patch = vents.patch(k);
     if (scene.numerics.wall_support)
       require_no_support(scene, scene.vents[k], patch, contact, parameters.support_radius);
+    require_no_fluid_behind(scene, start, scene.vents[k], patch, vents.layers() * start.spacing);
     if (scene.domain) require_in_domain(scene, scene.vents[k], patch, parameters.domain);
     Start outside;  // where a layer is when it has left
     outside.spacing = start.spacing;

@@ -250,16 +250,21 @@ Snapshot read_frame(const fs::path& path) {
   return snapshot;
 }
 
-void drop_frames_from(const fs::path& run_folder, int first) {
+std::int64_t drop_frames_from(const fs::path& run_folder, int first) {
   remove_temporaries(run_folder / "frames");
+  std::int64_t left = 0;
   for (const int number : frames_in(run_folder)) {
-    if (number < first) continue;
+    if (number < first) {
+      ++left;
+      continue;
+    }
     std::error_code error;
     fs::remove(run_folder / frame_name(number), error);
     if (error)
       throw Error(ExitCode::files, (run_folder / frame_name(number)).string() + ": cannot remove: " + error.message());
   }
   if (fs::exists(run_folder / "frames")) write_series(run_folder, known_frames(run_folder));
+  return left;
 }
 
 }  // namespace molten

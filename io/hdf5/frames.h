@@ -23,7 +23,7 @@ std::vector<FrameEntry> list_frames(const std::filesystem::path& run_folder);
 /// Reads one frame back, all fields.
 Snapshot read_frame(const std::filesystem::path& file);
 
-/// Drops frames with a number of `first` or more (resume makes them again).
-void drop_frames_from(const std::filesystem::path& run_folder, int first);
+/// Drops frames with a number of `first` or more (resume makes them again); returns how many are left.
+std::int64_t drop_frames_from(const std::filesystem::path& run_folder, int first);
 
 }  // namespace molten

@@ -136,7 +136,7 @@ std::size_t print_run(const Scene& scene, const Features& features, const Start&
 
 ExitCode check_scene(const Scene& scene) {
   const Features features = features_of(scene);
-  require_fields(features, scene.output.fields);
+  require_fields(scene, features);
   Stages stages;
   std::size_t found = 0;
   for (const Body& body : scene.fluid.bodies)

@@ -10,6 +10,7 @@
 #include "io/hdf5/checkpoint.h"
 #include "io/hdf5/frames.h"
 #include "io/program/commands.h"
+#include "io/program/say.h"
 
 namespace molten {
 
@@ -54,7 +55,13 @@ void print_json(const fs::path& file) {
 
 void print_run_folder(const fs::path& folder) {
   for (const char* name : {"manifest.json", "summary.json"}) print_json(folder / name);
-  for (const fs::path& file : list_checkpoints(folder)) print_checkpoint(file);
+  for (const fs::path& file : list_checkpoints(folder)) {
+    try {
+      print_checkpoint(file);
+    } catch (const Error& e) {  // a run goes on from an older one
+      say("warning: {}\n", e.what());
+    }
+  }
   const bool holds_run = fs::exists(folder / "manifest.json");  // which may well write no frames
   if (holds_run && (!fs::exists(folder / "frames") || fs::is_empty(folder / "frames")))
     return fmt::print("no frames\n");

@@ -52,7 +52,8 @@ std::vector<int> chosen_frames(const std::string& text, int count) {
   } else if (text.find(':') != std::string::npos) {
     const auto parts = split(text, ':');
     if (parts.size() > 3) bad_choice(text);
-    const int by = parts.size() == 3 ? std::max(1, number(parts[2], text)) : 1;
+    const int by = parts.size() == 3 ? number(parts[2], text) : 1;
+    if (by == 0) bad_choice(text);
     for (int k = number(parts[0], text); k < std::min(count, number(parts[1], text) + 1); k += by) chosen.push_back(k);
   } else {
     for (const std::string& part : split(text, ',')) chosen.push_back(number(part, text));
@@ -97,9 +98,18 @@ TriangleMesh with_bodies(TriangleMesh walls, const std::vector<TriangleMesh>& bo
   return walls;
 }
 
+void require_range(const PictureOptions& picture) {
+  if (!picture.range) return;
+  const auto [lowest, highest] = *picture.range;
+  if (!(std::isfinite(lowest) && std::isfinite(highest) && lowest < highest))
+    throw Error(ExitCode::usage,
+                fmt::format("--range {} {}: give the lowest value of the colours and a higher one", lowest, highest));
+}
+
 }  // namespace
 
 ExitCode render_run(const RenderChoice& choice) {
+  require_range(choice.picture);
   const auto frames = list_frames(choice.run);
   const std::vector<int> chosen = chosen_frames(choice.frames, static_cast<int>(frames.size()));
   const fs::path walls = choice.run / "walls.obj";

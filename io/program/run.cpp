@@ -38,6 +38,7 @@ double seconds_since(std::chrono::steady_clock::time_point t) {
 struct Ledger {
   std::int64_t frame_number = 0;  // of the next frame's file
   std::int64_t rows = 0;          // of series.csv
+  double last_frame = -1;         // s
   double initial_energy = 0, stepping_seconds = 0, particle_steps = 0, asleep_steps = 0, pairs_at_start = 0;
   std::vector<double> level_steps;  // particle-steps by level; empty without levels
   double stages = 0;                // of all steps
@@ -45,6 +46,7 @@ struct Ledger {
   void archive(Archive& a) {
     a.value("run/frame_number", frame_number);
     a.value("run/rows", rows);
+    a.value("run/last_frame", last_frame);
     a.value("run/initial_energy", initial_energy);
     a.value("run/stepping_seconds", stepping_seconds);
     a.value("run/particle_steps", particle_steps);
@@ -64,9 +66,11 @@ template <int Dim, class Real> class Runner {
 
   void restore(const std::filesystem::path& checkpoint) {
     read_checkpoint(checkpoint, [this](Archive& a) { archive(a); });
-    drop_frames_from(folder_, static_cast<int>(ledger_.frame_number));
+    const std::int64_t kept = drop_frames_from(folder_, static_cast<int>(ledger_.frame_number));
+    if (kept < ledger_.frame_number)
+      say("warning: {}: {} of the {} frames so far are not there; going on without them\n",
+          (folder_ / "frames").string(), ledger_.frame_number - kept, ledger_.frame_number);
     last_row_step_ = state_.clock.step;
-    if (ledger_.frame_number > 0) last_frame_ = list_frames(folder_).back().time;
     schedule();
     fresh_ = false;
   }
@@ -182,7 +186,7 @@ template <int Dim, class Real> class Runner {
 
   void write_snapshot() {
     write_frame(folder_, static_cast<int>(ledger_.frame_number++), take_snapshot(state_, scene_.output.fields));
-    last_frame_ = state_.clock.time;
+    ledger_.last_frame = state_.clock.time;
   }
 
   void checkpoint() {
@@ -206,7 +210,7 @@ template <int Dim, class Real> class Runner {
     checkpoint();
     // The last state is worth a row and a frame even between their times; a resume drops them again.
     if (code == ExitCode::done && state_.clock.step > last_row_step_) write_row(diagnose(state_));
-    if (code == ExitCode::done && scene_.output.frames_per_second > 0 && state_.clock.time > last_frame_)
+    if (code == ExitCode::done && scene_.output.frames_per_second > 0 && state_.clock.time > ledger_.last_frame)
       write_snapshot();
     if (state_.neighbours.dropped() > 0) say("note: {} particles have left the domain\n", state_.neighbours.dropped());
     summarise(code == ExitCode::done ? "done" : "interrupted");
@@ -254,7 +258,7 @@ template <int Dim, class Real> class Runner {
   std::string fingerprint_;
   Ledger ledger_;
   bool fresh_ = true;
-  double next_row_ = 0, last_frame_ = -1;  // s
+  double next_row_ = 0;  // s
   std::int64_t last_row_step_ = -1;
   std::optional<Series> series_;
   std::optional<Progress> progress_;
@@ -329,9 +333,9 @@ void set_threads(int threads) {
 }  // namespace
 
 ExitCode run_scene(const Scene& scene, const RunOptions& options) {
-  outlive_readers();
+  let_writes_fail();
   const Features features = features_of(scene);
-  require_fields(features, scene.output.fields);
+  require_fields(scene, features);
   const Start start = fill_bodies(scene, features);  // meshes are read in child processes: before any threads
   const std::string print = fingerprint(scene, start);
   set_threads(options.threads);
@@ -372,15 +376,17 @@ Usable newest_usable(const std::filesystem::path& folder) {
     }
   }
   throw Error(ExitCode::checkpoint,
-              defects.empty() ? folder.string() + ": holds no checkpoint; start it again with `molten run SCENE -o " +
-                                    folder.string() + " --overwrite`"
-                              : defects[0]);
+              defects.empty()
+                  ? folder.string() + ": holds no checkpoint; start it again with `molten run SCENE -o " +
+                        folder.string() + " --overwrite`"
+                  : defects[0] + (defects.size() > 1 ? ", and no older checkpoint is whole" : "") +
+                        "; start the run again with `molten run SCENE -o " + folder.string() + " --overwrite`");
 }
 
 }  // namespace
 
 ExitCode resume_run(const ResumeOptions& options) {
-  outlive_readers();
+  let_writes_fail();
   if (!std::filesystem::is_directory(options.folder))
     throw Error(ExitCode::checkpoint, options.folder.string() +
                                           ": no such folder; start a run with `molten run SCENE -o " +
@@ -393,7 +399,7 @@ ExitCode resume_run(const ResumeOptions& options) {
   Scene scene = parse_scene(text, copy.string(), options.overrides);
   scene.file = scene_file_of(options.folder);
   const Features features = features_of(scene);
-  require_fields(features, scene.output.fields);
+  require_fields(scene, features);
   const Start start = fill_bodies(scene, features);
   set_threads(options.threads);
   const std::string print = fingerprint(scene, start);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "io/program/say.h"
 
 namespace molten {
 
@@ -28,7 +29,7 @@ std::vector<std::string> first_rows(const std::filesystem::path& file, std::int6
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  while (static_cast<std::int64_t>(rows.size()) < count && std::getline(in, line)) rows.push_back(line);
+  while (static_cast<std::int64_t>(rows.size()) < count && std::getline(in, line) && !in.eof()) rows.push_back(line);
   return rows;
 }
 
@@ -37,6 +38,8 @@ std::vector<std::string> first_rows(const std::filesystem::path& file, std::int6
 Series::Series(const std::filesystem::path& file, std::int64_t keep, const Features& features, std::size_t bodies)
     : file_(file), features_(features) {
   const std::vector<std::string> kept = first_rows(file, keep);
+  if (const auto missing = keep - std::ssize(kept); missing > 0)
+    say("warning: {}: {} of the {} rows so far are not there; going on without them\n", file.string(), missing, keep);
   const std::filesystem::path part = file.string() + ".tmp";
   {
     std::ofstream fresh(part, std::ios::trunc);

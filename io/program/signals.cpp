@@ -7,6 +7,8 @@ namespace molten {
 namespace {
 volatile std::sig_atomic_t requested = 0;
 
+void on_limit(int) { requested = 1; }
+
 void on_signal(int number) {
   if (requested) {
     std::signal(number, SIG_DFL);
@@ -25,10 +27,14 @@ void catch_stop_signals() {
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
   if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup wants it to go on
-  std::signal(SIGPIPE, SIG_IGN);                                          // nobody reads what it says any more
+  action.sa_handler = on_limit;
+  sigaction(SIGXCPU, &action, nullptr);
 }
 
-void outlive_readers() { std::signal(SIGPIPE, SIG_IGN); }
+void let_writes_fail() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
 
 bool stop_requested() { return requested != 0; }
 

@@ -1,11 +1,13 @@
-// SIGINT, SIGTERM and SIGHUP: the first asks the run to stop cleanly, the second ends the program at once.
+// SIGINT, SIGTERM and SIGHUP: the first asks the run to stop cleanly, the second ends the program at once. SIGXCPU,
+// which comes again every second once the limit of CPU time is reached, asks for the same.
 #pragma once
 
 namespace molten {
 
 void catch_stop_signals();
-/// Goes on when nobody reads any more what the program says.
-void outlive_readers();
+/// What nobody reads any more and what is beyond the limit of a file's size are errors of writing, no end of the
+/// program.
+void let_writes_fail();
 bool stop_requested();
 
 }  // namespace molten
