@@ -43,7 +43,7 @@ template <class Sums, int Dim, class T> class PlainOut {
   }
   void finish() {
     for_each_field([&]<class F>(F) {
-      if constexpr (contains<F, Sums> && F::shape == FieldShape::vector) {
+      if constexpr (is_among<F, Sums> && F::shape == FieldShape::vector) {
         if (!has_radial_.test(field_index<F>)) return;
         const T s = kernel_.slope * radial_[F{}][0];
         for (int d = 0; d < Dim; ++d) sums[F{}][d] += s * x_[d];
@@ -154,7 +154,7 @@ template <int Dim, class... Terms> std::int64_t operations_a_pair(const Terms&..
   const std::int64_t before_kernel = T::operations;
   const Kernel<KernelChoice::wendland_c2, double> wendland(KernelKind::wendland_c2, Dim, 1, 1);
   const ShapeAndSlope<T> kernel = wendland.at(q);
-  if (!contains<XsphVelocity, SumsOf<Terms...>>) T::operations = before_kernel + slope_operations;
+  if (!is_among<XsphVelocity, SumsOf<Terms...>>) T::operations = before_kernel + slope_operations;
   PlainOut<SumsOf<Terms...>, Dim, T> out(kernel, ij.x);
   const auto add = [&](const auto& term) {
     if (term.on) term(ij, i, j, out);

@@ -134,13 +134,13 @@ template <class F, class G, class... Rest> struct IndexOf<F, FieldList<G, Rest..
 
 template <class F> inline constexpr int field_index = IndexOf<F, AllFields>::value;
 
-template <class F, class List> inline constexpr bool contains = false;
-template <class F, class... G> inline constexpr bool contains<F, FieldList<G...>> = (std::is_same_v<F, G> || ...);
+template <class F, class List> inline constexpr bool is_among = false;
+template <class F, class... G> inline constexpr bool is_among<F, FieldList<G...>> = (std::is_same_v<F, G> || ...);
 
 template <class A, class B> struct Joined;
 template <class... A> struct Joined<FieldList<A...>, FieldList<>> { using type = FieldList<A...>; };
 template <class... A, class F, class... B> struct Joined<FieldList<A...>, FieldList<F, B...>> {
-  using type = typename std::conditional_t<contains<F, FieldList<A...>>, Joined<FieldList<A...>, FieldList<B...>>,
+  using type = typename std::conditional_t<is_among<F, FieldList<A...>>, Joined<FieldList<A...>, FieldList<B...>>,
                                            Joined<FieldList<A..., F>, FieldList<B...>>>::type;
 };
 
@@ -151,7 +151,7 @@ template <class List, class... Lists> struct UnionOf<List, Lists...> {
 };
 
 template <class A, class B> inline constexpr bool disjoint = true;
-template <class... A, class B> inline constexpr bool disjoint<FieldList<A...>, B> = !(contains<A, B> || ...);
+template <class... A, class B> inline constexpr bool disjoint<FieldList<A...>, B> = !(is_among<A, B> || ...);
 
 // ---- shapes ---------------------------------------------------------------------------------------------------------
 

@@ -45,10 +45,10 @@ template <class List, int Dim, class T> struct Values;
 template <class... F, int Dim, class T> struct Values<FieldList<F...>, Dim, T> : Slot<F, Dim, T>... {
   using List = FieldList<F...>;
   template <class G>
-  requires contains<G, FieldList<F...>> value_t<G, Dim, T>
+  requires is_among<G, FieldList<F...>> value_t<G, Dim, T>
   &operator[](G) { return Slot<G, Dim, T>::value; }
   template <class G>
-  requires contains<G, FieldList<F...>>
+  requires is_among<G, FieldList<F...>>
   const value_t<G, Dim, T>& operator[](G) const { return Slot<G, Dim, T>::value; }
 };
 

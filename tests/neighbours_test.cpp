@@ -129,7 +129,9 @@ TEST(Grid, NumbersItsColumnsStripByStrip) {
       ASSERT_TRUE(cell[0] >= 0 && cell[0] < across && cell[1] >= 0 && cell[1] < 9 && cell[2] == 3) << n;
       const auto strip = [](const Cell<3>& c) { return c[0] / static_cast<int>(Grid<3>::strip_width); };
       ASSERT_GE(strip(cell), strip(before)) << n;
-      if (strip(cell) == strip(before)) ASSERT_LE(cell[1] - before[1], 1) << n;
+      if (strip(cell) == strip(before)) {
+        ASSERT_LE(cell[1] - before[1], 1) << n;
+      }
       before = cell;
     }
   }

@@ -194,7 +194,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
       const Matrix part = patch.hidden * Matrix::Identity() - patch.across;
       hidden += patch.hidden;
       along += part;
-      if constexpr (contains<Acceleration, FieldList<F...>>) {
+      if constexpr (is_among<Acceleration, FieldList<F...>>) {
         if (given.empty() || wall.body < 0) return;
         if (shares.empty() || shares.back().body != wall.body) shares.push_back({wall.body});
         shares.back().acceleration += point_of(walls[acceleration]) - point_of(before[acceleration]);
@@ -207,7 +207,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     (join(F{}, sums[F{}], walls[F{}], L(static_cast<Real>(1 / (1 - limited))),
           [&](const Vec<Dim, L>& a) { return lanes_of<L>((Matrix::Identity() - along).inverse() * point_of(a)); }),
      ...);
-    if constexpr (contains<Acceleration, FieldList<F...>>)
+    if constexpr (is_among<Acceleration, FieldList<F...>>)
       for (const Share& share : shares) {
         // What multiplies the acceleration, (1 − A)^−1, adds A times what comes out.
         const Point<Dim> gain = share.acceleration + kept * share.along * point_of(sums[acceleration]);
@@ -256,7 +256,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     };
     std::apply([&](const Terms&... term) { (add(term), ...); }, terms_);
     out.add_radial(Radial{}, ij.x);
-    if constexpr (contains<PressureTerm, Reads>) sums[acceleration] += n.pull;
+    if constexpr (is_among<PressureTerm, Reads>) sums[acceleration] += n.pull;
   }
 
   // ---- the fields of the fluid at a wall, from those of the particle

@@ -98,7 +98,9 @@ template <int Dim, class Real> class Runner {
 
  private:
   void begin() {
-    series_.emplace(folder_ / "series.csv", fresh_ ? 0 : ledger_.rows, state_.features, state_.bodies.count());
+    series_.emplace(folder_ / "series.csv", Series::Kept{ledger_.rows, state_.clock.step}, state_.features,
+                    state_.bodies.count());
+    ledger_.rows = series_->rows();
     if (fresh_) {
       const Diagnostics d = diagnose(state_);
       ledger_.initial_energy = d.kinetic_energy + d.potential_energy;
@@ -158,7 +160,7 @@ template <int Dim, class Real> class Runner {
 
   void write_row(const Diagnostics& d) {
     series_->add(state_.clock, d);
-    ++ledger_.rows;
+    ledger_.rows = series_->rows();
     last_row_step_ = state_.clock.step;
     if (d.max_compression > much_compression && !said_compression_) say_compression(d.max_compression);
   }

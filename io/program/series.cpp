@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <vector>
 
 #include "core/error.h"
@@ -24,27 +25,32 @@ std::string header_of(const Features& f, std::size_t bodies) {
   return header;
 }
 
-std::vector<std::string> first_rows(const std::filesystem::path& file, std::int64_t count) {
+/// Whole rows only: the last one of a file that was cut has no end of line.
+std::vector<std::string> first_rows(const std::filesystem::path& file, const Series::Kept& kept) {
+  const auto step_of = [](const std::string& row) { return std::atoll(row.c_str() + row.find(',') + 1); };
   std::vector<std::string> rows;
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  while (static_cast<std::int64_t>(rows.size()) < count && std::getline(in, line) && !in.eof()) rows.push_back(line);
+  while (std::ssize(rows) < kept.rows && std::getline(in, line) && !in.eof() && step_of(line) <= kept.step)
+    rows.push_back(line);
   return rows;
 }
 
 }  // namespace
 
-Series::Series(const std::filesystem::path& file, std::int64_t keep, const Features& features, std::size_t bodies)
+Series::Series(const std::filesystem::path& file, const Kept& kept, const Features& features, std::size_t bodies)
     : file_(file), features_(features) {
-  const std::vector<std::string> kept = first_rows(file, keep);
-  if (const auto missing = keep - std::ssize(kept); missing > 0)
-    say("warning: {}: {} of the {} rows so far are not there; going on without them\n", file.string(), missing, keep);
+  const std::vector<std::string> rows = first_rows(file, kept);
+  rows_ = std::ssize(rows);
+  if (rows_ < kept.rows)
+    say("warning: {}: {} of the {} rows so far are not there; going on without them\n", file.string(),
+        kept.rows - rows_, kept.rows);
   const std::filesystem::path part = file.string() + ".tmp";
   {
     std::ofstream fresh(part, std::ios::trunc);
     fresh << header_of(features, bodies) << '\n';
-    for (const std::string& row : kept) fresh << row << '\n';
+    for (const std::string& row : rows) fresh << row << '\n';
     if (!fresh.flush())
       throw Error(ExitCode::files, file.string() + ": cannot write; check the disk and the folder's rights");
   }
@@ -66,6 +72,7 @@ void Series::add(const Clock& c, const Diagnostics& d) {
   for (const auto& x : d.bodies) out_ << fmt::format(",{:.9g},{:.9g},{:.9g}", x[0], x[1], x[2]);
   out_ << '\n';
   if (!out_.flush()) throw Error(ExitCode::files, file_.string() + ": cannot write; check the disk");
+  ++rows_;
 }
 
 }  // namespace molten

@@ -10,14 +10,21 @@ namespace molten {
 
 class Series {
  public:
-  /// Opens the file with its first `keep` rows; a resume makes the others again. `bodies`: how many move.
-  Series(const std::filesystem::path& file, std::int64_t keep, const Features& features, std::size_t bodies);
+  /// What a resume keeps of the file: its first rows, none of a later step. It makes the others again.
+  struct Kept {
+    std::int64_t rows = 0, step = 0;
+  };
+
+  /// Opens the file; `bodies`: how many move.
+  Series(const std::filesystem::path& file, const Kept& kept, const Features& features, std::size_t bodies);
   /// Throws Error(files) when the disk is full.
   void add(const Clock& clock, const Diagnostics& d);
+  std::int64_t rows() const { return rows_; }
 
  private:
   std::filesystem::path file_;
   Features features_;
+  std::int64_t rows_ = 0;
   std::ofstream out_;
 };
 
