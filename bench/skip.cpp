@@ -119,6 +119,22 @@ Scene with_xsph(Scene scene) {
   scene.numerics.xsph = Xsph{};
   return scene;
 }
+Scene with_outflow(Scene scene) {
+  scene.outflows = {Plane{{0, 0, -100}, {0, 0, -1}}};
+  return scene;
+}
+Scene with_moving_wall(Scene scene) {
+  Boundary ball;
+  ball.shape.sphere = Sphere{{0.5, 0.5, 1.5}, 0.2};
+  ball.motion.emplace().velocity = {0, 0, 0.1};
+  scene.boundaries.push_back(ball);
+  return scene;
+}
+/// Numerics as f(numerics) makes them.
+template <class F> Scene with_numerics(Scene scene, F f) {
+  f(scene.numerics);
+  return scene;
+}
 Scene without_artificial(Scene scene) {
   scene.numerics.artificial_viscosity = 0;
   return scene;
@@ -129,9 +145,10 @@ ArtificialViscosity<float> artificial(const S& s) {
   return {p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, p.eos.rest_density};
 }
 
-/// The steps of a block of 100 000 particles; `extra(s)` makes the one optional term that its scene has.
+/// The steps of a block of 100 000 particles; `extra(s)` makes the one optional term that its scene has, which is
+/// always on in it.
 template <class Extra> Step forces_and(Extra extra) {
-  return [=](S& s) { minimal_step(s, false, Continuity{}, PressureForce{}, artificial(s), extra(s)); };
+  return [=](S& s) { minimal_step(s, false, Continuity{}, PressureForce{}, Always(artificial(s)), Always(extra(s))); };
 }
 
 std::vector<Comparison> comparisons() {
@@ -143,6 +160,8 @@ std::vector<Comparison> comparisons() {
   const Step laminar = forces_and(
       [](const S& s) { return LaminarViscosity<float>(s.parameters.viscosity, s.parameters.eos.rest_density); });
   const Step xsph = forces_and([](const S& s) { return XsphTerm<float>(true, s.parameters.eos.rest_density); });
+  const Step basic = [](S& s) { minimal_step(s, false, Continuity{}, PressureForce{}, Always(artificial(s))); };
+  const auto also = [](const Scene& scene, auto f) { return with_numerics(scene, f); };
   return {
       {"heat", with_smd(plain()), with_heat(with_smd(plain())), stress},
       {"smd_stress", with_heat(plain()), with_smd(with_heat(plain())), heat},
@@ -151,7 +170,17 @@ std::vector<Comparison> comparisons() {
       {"artificial_viscosity", without_artificial(plain()), plain(),
        [](S& s) { minimal_step(s, false, Continuity{}, PressureForce{}); }},
       {"contact", plain(), tank(3, 1.3),
-       [](S& s) { minimal_step(s, true, Continuity{}, PressureForce{}, artificial(s)); }},
+       [](S& s) { minimal_step(s, true, Continuity{}, PressureForce{}, Always(artificial(s))); }},
+      {"density_diffusion", plain(), also(plain(), [](Numerics& n) { n.density_diffusion = 0.2; }), basic},
+      {"density_filter", plain(), also(plain(), [](Numerics& n) { n.density_filter.emplace(); }), basic},
+      {"gradient_correction", plain(), also(plain(), [](Numerics& n) { n.gradient_correction = true; }), basic},
+      {"tensile_correction", plain(), also(plain(), [](Numerics& n) { n.tensile_correction = true; }), basic},
+      {"sleep", plain(), also(plain(), [](Numerics& n) { n.sleep.emplace(); }), basic},
+      {"outflow", plain(), with_outflow(plain()), basic},
+      {"wall_support", tank(3, 1.3), also(tank(3, 1.3), [](Numerics& n) { n.wall_support = true; }), basic},
+      {"moving_wall", tank(3, 1.3), with_moving_wall(tank(3, 1.3)), basic},
+      {"time_step_levels", with_smd(plain()), also(with_smd(plain()), [](Numerics& n) { n.time_step_levels = 2; }),
+       stress},
   };
 }
 

@@ -80,22 +80,30 @@ template <int Dim, class Real> class RestCells {
   Marks widened(Marks marks) const {
     std::size_t stride = 1;
     for (int d = 0; d < Dim; ++d) {
-      const std::size_t n = cells_[d];
-      Marks wide(marks.size());
-      for_each_slot(marks.size(), [&](std::size_t c) {
-        const std::size_t k = c / stride % n, row = c - k * stride;
-        const auto at = [&](std::size_t j) { return marks[row + j * stride]; };
-        const bool wraps = grid_.periodic[d];
-        const bool below = k > 0 ? at(k - 1) : wraps && at(n - 1), above = k + 1 < n ? at(k + 1) : wraps && at(0);
-        wide[c] = at(k) || below || above;
-      });
-      marks.swap(wide);
-      stride *= n;
+      marks = widened_along(marks, stride, static_cast<std::size_t>(cells_[d]), grid_.periodic[d]);
+      stride *= static_cast<std::size_t>(cells_[d]);
     }
     return marks;
   }
 
  private:
+  /// The same along one direction, in which there are n cells, `stride` apart.
+  Marks widened_along(const Marks& marks, std::size_t stride, std::size_t n, bool wraps) const {
+    Marks wide(marks);
+    // Cells [begin, begin + count) get what those `ahead` of them hold, and the other way round.
+    const auto exchange = [from = marks.data(), to = wide.data()](std::size_t begin, std::size_t count,
+                                                                  std::size_t ahead) {
+      for (std::size_t c = begin; c < begin + count; ++c) to[c] |= from[c + ahead];
+      for (std::size_t c = begin; c < begin + count; ++c) to[c + ahead] |= from[c];
+    };
+    for_each_slot(marks.size() / (n * stride), [&](std::size_t k) {
+      const std::size_t begin = k * n * stride, last = (n - 1) * stride;
+      exchange(begin, last, stride);
+      if (wraps) exchange(begin, stride, last);
+    });
+    return wide;
+  }
+
   Column<Position, Dim, double> x_;
   const Grid<Dim>& grid_;
   std::array<std::int32_t, Dim> cells_{};

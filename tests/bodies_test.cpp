@@ -8,7 +8,7 @@
 #include "tests/flavours.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::bodies_test {
 namespace {
 
 using namespace contact_test;
@@ -289,4 +289,4 @@ TYPED_TEST(FreeBodyInFluid, ImpactConservesMomentumToAMillionth) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::bodies_test

@@ -5,7 +5,7 @@
 #include "tests/memory_archive.h"
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::body_support_test {
 namespace {
 
 using namespace physics_case;
@@ -139,4 +139,4 @@ TEST(BodySupport, IsFoundWhereABodyComesToFluidAtRest) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::body_support_test

@@ -7,7 +7,7 @@
 #include "tests/contact_shapes.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::body_walls_test {
 namespace {
 
 using namespace contact_test;
@@ -145,4 +145,4 @@ TEST(BodyWalls, StayInATank) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::body_walls_test

@@ -17,7 +17,7 @@
 #include "tests/scene_texts.h"
 #include "tests/with_threads.h"
 
-namespace molten {
+namespace molten::boundary_particles_test {
 namespace {
 
 using namespace scene_texts;
@@ -416,4 +416,4 @@ TEST(BoundaryParticles, OpenPolygonsLackTheirLastEdge) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::boundary_particles_test

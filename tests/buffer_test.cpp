@@ -7,7 +7,7 @@
 
 #include "core/buffer.h"
 
-namespace molten {
+namespace molten::buffer_test {
 namespace {
 
 constexpr std::size_t kib = 1024, mib = 1024 * kib;
@@ -70,4 +70,4 @@ TEST(BufferOfColumns, MovesWithItsMemory) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::buffer_test

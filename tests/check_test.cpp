@@ -3,7 +3,7 @@
 
 #include "tests/program.h"
 
-namespace molten {
+namespace molten::check_test {
 namespace {
 
 using CheckTest = ProgramTest;
@@ -139,4 +139,4 @@ TEST_F(WarningTest, StepsTooLong) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::check_test

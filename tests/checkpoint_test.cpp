@@ -8,7 +8,7 @@
 #include "tests/small_files_only.h"
 #include "tests/temp_folder.h"
 
-namespace molten {
+namespace molten::checkpoint_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -236,4 +236,4 @@ TEST(Checkpoint, AnErrorWhileSavingLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::checkpoint_test

@@ -6,7 +6,7 @@
 #include "core/boundary/contact.h"
 #include "tests/contact_shapes.h"
 
-namespace molten {
+namespace molten::contact_stress_test {
 namespace {
 
 using namespace contact_test;
@@ -198,4 +198,4 @@ TEST(ContactStress, TheThreadDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::contact_stress_test

@@ -8,7 +8,7 @@
 #include "core/particle_pass.h"
 #include "tests/contact_shapes.h"
 
-namespace molten {
+namespace molten::contact_sweeps_test {
 namespace {
 
 using namespace contact_test;
@@ -316,4 +316,4 @@ TEST(ContactTwoSided, AParticlePinchedBetweenSheetsStays) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::contact_sweeps_test

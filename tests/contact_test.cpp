@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "tests/contact_shapes.h"
 
-namespace molten {
+namespace molten::contact_test {
 namespace {
 
 using namespace contact_test;
@@ -486,4 +486,4 @@ TEST(Contact, BoxHearsOfWallsNearItsPoints) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::contact_test

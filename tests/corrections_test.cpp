@@ -9,7 +9,7 @@
 #include "core/physics/gradient_correction.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::corrections_test {
 namespace {
 
 using namespace particle_sets;
@@ -344,4 +344,4 @@ TYPED_TEST(CorrectionsOf, MakeLaplaciansWholeAndKeepHeat) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::corrections_test

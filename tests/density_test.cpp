@@ -7,7 +7,7 @@
 #include "core/runge_kutta.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::density_test {
 namespace {
 
 using namespace particle_sets;
@@ -177,4 +177,4 @@ TEST(Density, IdealGas) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::density_test

@@ -8,7 +8,7 @@
 
 #include "core/boundary/gauss.h"
 
-namespace molten {
+namespace molten::edge_integrals_test {
 namespace {
 
 constexpr double smoothing_length = 1.3;
@@ -62,4 +62,4 @@ TEST(EdgeIntegrals, AnEdgeUnderTheParticleHalvesThePlane) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::edge_integrals_test

@@ -7,7 +7,7 @@
 #include "tests/particle_sets.h"
 #include "tests/with_threads.h"
 
-namespace molten {
+namespace molten::energy_bound_test {
 namespace {
 
 using namespace particle_sets;
@@ -181,4 +181,4 @@ TYPED_TEST(EnergyBoundOf, SameBitsForAnyThreads) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::energy_bound_test

@@ -4,7 +4,7 @@
 #include "core/cluster_motion.h"
 #include "tests/contact_shapes.h"
 
-namespace molten {
+namespace molten::face_bounce_test {
 namespace {
 
 using namespace contact_test;
@@ -140,4 +140,4 @@ TEST(FaceBounce, OnlyWhereThereIsNothingElse) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::face_bounce_test

@@ -7,7 +7,7 @@
 #include "core/boundary/facet_sides.h"
 #include "tests/contact_shapes.h"
 
-namespace molten {
+namespace molten::facet_grid_test {
 namespace {
 
 using contact_test::Random;
@@ -259,4 +259,4 @@ TEST(FacetGrid, EmptyAndNotFinite) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::facet_grid_test

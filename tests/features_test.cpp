@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::features_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -393,4 +393,4 @@ TEST(Features, ColumnsThatARunLacksTakeNoMemory) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::features_test

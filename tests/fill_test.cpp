@@ -15,7 +15,7 @@
 #include "core/error.h"
 #include "io/geometry/mesh_file.h"
 
-namespace molten {
+namespace molten::fill_test {
 namespace {
 
 using std::numbers::pi;
@@ -301,4 +301,4 @@ TEST(Fill, Bunny) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::fill_test

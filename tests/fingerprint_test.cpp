@@ -7,7 +7,7 @@
 #include "io/geometry/assemble.h"
 #include "tests/scene_texts.h"
 
-namespace molten {
+namespace molten::fingerprint_test {
 namespace {
 
 using namespace scene_texts;
@@ -271,4 +271,4 @@ TEST(Fingerprint, NoKeyIsForgottenAbove) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::fingerprint_test

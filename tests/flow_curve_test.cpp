@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace molten {
+namespace molten::flow_curve_test {
 namespace {
 
 using Model = Rheology::Model;
@@ -66,4 +66,4 @@ TEST(FlowCurve, Temperatures) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::flow_curve_test

@@ -11,7 +11,7 @@
 #include "tests/small_files_only.h"
 #include "tests/temp_folder.h"
 
-namespace molten {
+namespace molten::frames_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ TEST(Frames, UnequalColumnsAreRefused) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::frames_test

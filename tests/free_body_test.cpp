@@ -5,7 +5,7 @@
 #include "core/step.h"
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::free_body_test {
 namespace {
 
 /// Water 0.5 m deep; a box of 0.6 m × 0.3 m starts 0.1 m above it.
@@ -50,4 +50,4 @@ TEST(FreeBody, TheLightestThatIsAllowedDoesNotBounceAboveItsStart) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::free_body_test

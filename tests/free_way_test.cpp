@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace molten {
+namespace molten::free_way_test {
 namespace {
 
 TEST(FreeWay, NeverHidesAWallThatMayBeMet) {
@@ -35,4 +35,4 @@ TEST(FreeWay, KeepsThoseOfNeighboursApart) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::free_way_test

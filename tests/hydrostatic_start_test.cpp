@@ -5,7 +5,7 @@
 
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::hydrostatic_start_test {
 namespace {
 
 using namespace physics_case;
@@ -91,4 +91,4 @@ TEST(HydrostaticStart, LeavesTheLatticeWhereItIsNotToBeSqueezed) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::hydrostatic_start_test

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-namespace molten {
+namespace molten::kernel_test {
 namespace {
 
 const std::vector<KernelKind> all_kernels = {KernelKind::gaussian,    KernelKind::quadratic, KernelKind::cubic_spline,
@@ -186,4 +186,4 @@ TEST(Kernel, ConductionConstants) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::kernel_test

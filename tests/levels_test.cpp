@@ -14,7 +14,7 @@
 #include "tests/particle_sets.h"
 #include "tests/with_threads.h"
 
-namespace molten {
+namespace molten::levels_test {
 namespace {
 
 using namespace particle_sets;
@@ -324,4 +324,4 @@ TYPED_TEST(LevelsOf, SurviveARestartBitForBit) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::levels_test

@@ -7,7 +7,7 @@
 #include "io/geometry/leak.h"
 #include "tests/contact_shapes.h"
 
-namespace molten {
+namespace molten::mesh_defects_test {
 namespace {
 
 TriangleMesh ball(const Vec3& centre = {1, 2, 3}, double radius = 0.5) {
@@ -139,4 +139,4 @@ TEST(Leak, IsFoundAndLocatedIfAParticleFitsThrough) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::mesh_defects_test

@@ -14,7 +14,7 @@
 #include "io/geometry/child_process.h"
 #include "tests/temp_folder.h"
 
-namespace molten {
+namespace molten::mesh_file_test {
 namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
@@ -405,4 +405,4 @@ TEST(MeshFileModels, Bunny) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::mesh_file_test

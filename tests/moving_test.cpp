@@ -8,7 +8,7 @@
 #include "tests/memory_archive.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::moving_test {
 namespace {
 
 using namespace particle_sets;
@@ -244,4 +244,4 @@ TYPED_TEST(Moving, AVentWakesWhatItReaches) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::moving_test

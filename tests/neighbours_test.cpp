@@ -7,7 +7,7 @@
 
 #include "tests/clouds.h"
 
-namespace molten {
+namespace molten::neighbours_test {
 namespace {
 
 using namespace clouds;
@@ -367,4 +367,4 @@ TYPED_TEST(NeighboursOf, WrapsPeriodicPositions) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::neighbours_test

@@ -10,7 +10,7 @@
 #include "core/physics/xsph.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::pair_pass_test {
 namespace {
 
 using namespace particle_sets;
@@ -257,4 +257,4 @@ TEST(PairPass, OnlyIndependentTermsFuse) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::pair_pass_test

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::parameters_test {
 namespace {
 
 using namespace particle_sets;
@@ -103,4 +103,4 @@ TEST(SoundSpeed, IsTenTimesTheFastestWalls) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::parameters_test

@@ -8,7 +8,7 @@
 
 #include "tests/memory_archive.h"
 
-namespace molten {
+namespace molten::particles_test {
 namespace {
 
 const FieldSet some_fields =
@@ -151,4 +151,4 @@ TEST(Particles, ArchiveHasEveryColumnOnce) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::particles_test

@@ -7,7 +7,7 @@
 #include "core/pieces.h"
 #include "tests/with_threads.h"
 
-namespace molten {
+namespace molten::pieces_test {
 namespace {
 
 TEST(PiecesOfWork, AreDoneOnceEach) {
@@ -39,4 +39,4 @@ TEST(PiecesOfWork, FollowOneAnotherInAThreadsStretch) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::pieces_test

@@ -8,7 +8,7 @@
 #include "io/scene/scene_file.h"
 #include "tests/temp_folder.h"
 
-namespace molten {
+namespace molten::placed_mesh_test {
 namespace {
 
 /// What is said of a boundary with this mesh and these keys; empty: nothing.
@@ -72,4 +72,4 @@ TEST(PlacedMesh, ABodyIsClosed) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::placed_mesh_test

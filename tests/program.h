@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/replaced.h"
 #include "tests/temp_folder.h"
 
 namespace molten {
@@ -129,12 +130,6 @@ inline const std::string cube =
 
 inline std::string mesh_scene(const std::string& mesh) {
   return fmt::format("[fluid]\nmesh = \"{}\"\nspacing = 0.2\n[run]\nend_time = 0.001\n", mesh);
-}
-
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
 }
 
 /// A folder with a blank in its name, a scene in it, and where its run would go.

@@ -3,7 +3,7 @@
 
 #include "tests/program.h"
 
-namespace molten {
+namespace molten::program_mistakes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -196,4 +196,4 @@ TEST_F(BadPlace, NothingToResume) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::program_mistakes_test

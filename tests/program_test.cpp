@@ -8,7 +8,7 @@
 #include "tests/program.h"
 #include "tests/small_files_only.h"
 
-namespace molten {
+namespace molten::program_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -287,4 +287,4 @@ TEST_F(Commands, ASecondSignalEndsAtOnce) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::program_test

@@ -12,7 +12,7 @@
 #include "io/picture/font.h"
 #include "tests/temp_folder.h"
 
-namespace molten {
+namespace molten::render_test {
 namespace {
 
 struct Pixel {
@@ -236,4 +236,4 @@ TEST(Png, BadPlacesAreFileErrors) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::render_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace molten {
+namespace molten::rheology_test {
 namespace {
 
 /// The largest viscosity over all strain rates, in units of the zero-shear one, J + 1.
@@ -125,4 +125,4 @@ TEST(Rheology, StrainMagnitudeOfSimpleFlows) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::rheology_test

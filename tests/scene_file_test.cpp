@@ -8,7 +8,7 @@
 #include "tests/scene_texts.h"
 #include "tests/temp_folder.h"
 
-namespace molten {
+namespace molten::scene_file_test {
 namespace {
 
 using namespace scene_texts;
@@ -376,4 +376,4 @@ TEST(SceneFile, RandomBytesDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::scene_file_test

@@ -3,7 +3,7 @@
 
 #include "tests/scene_texts.h"
 
-namespace molten {
+namespace molten::scene_mistakes_test {
 namespace {
 
 using namespace scene_texts;
@@ -212,4 +212,4 @@ TEST(SceneMistakes, MistakesInTwoDimensions) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::scene_mistakes_test

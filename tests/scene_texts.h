@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "io/scene/scene_file.h"
+#include "tests/replaced.h"
 
 namespace molten::scene_texts {
 
@@ -86,12 +87,6 @@ spacing = 0.03
 [run]
 end_time = 1
 )";
-
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
 
 /// The message that the text ends in; empty when it is a good scene.
 inline std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {

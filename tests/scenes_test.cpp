@@ -12,7 +12,7 @@
 #include "tests/program.h"
 #include "tests/temp_folder.h"
 
-namespace molten {
+namespace molten::scenes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -134,4 +134,4 @@ TEST(SlowScenes, LavaRunsDownTheVolcano) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::scenes_test

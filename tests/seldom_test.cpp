@@ -8,7 +8,7 @@
 #include "core/physics/muller_viscosity.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::seldom_test {
 namespace {
 
 using namespace particle_sets;
@@ -209,4 +209,4 @@ TYPED_TEST(SeldomOf, EnergyIsKeptThroughARun) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::seldom_test

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "io/geometry/mesh_file.h"
 
-namespace molten {
+namespace molten::shapes_test {
 namespace {
 
 using std::numbers::pi;
@@ -136,4 +136,4 @@ TEST(Shapes, OutlinesHaveTheirAreas) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::shapes_test

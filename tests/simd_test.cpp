@@ -1,6 +1,7 @@
 // Lanes of a cluster pair against plain loops: what is written with machine instructions gives the same numbers.
 #include "core/simd.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace molten {
+namespace molten::simd_test {
 namespace {
 
 /// I particles against N / I.
@@ -36,7 +37,14 @@ template <class S> class LanesOfPairs : public testing::Test {
 
 using Shapes = testing::Types<Shape<float, native_lanes<float>, 4>, Shape<double, native_lanes<double>, 4>,
                               Shape<float, 8, 4>, Shape<double, 4, 4>>;
-TYPED_TEST_SUITE(LanesOfPairs, Shapes);
+
+struct ShapeNames {
+  // Of AVX2's lanes two shapes are the same: numbered, too.
+  template <class S> static std::string GetName(int number) {
+    return fmt::format("{}{}by{}No{}", sizeof(typename S::Real) == 4 ? "Single" : "Double", S::I, S::J, number);
+  }
+};
+TYPED_TEST_SUITE(LanesOfPairs, Shapes, ShapeNames);
 
 TYPED_TEST(LanesOfPairs, RepeatEachOfIAndAllOfJ) {
   using S = TypeParam;
@@ -130,4 +138,4 @@ TEST_F(NumberLists, OneBitOfEach) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::simd_test

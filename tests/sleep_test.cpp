@@ -11,7 +11,7 @@
 #include "tests/memory_archive.h"
 #include "tests/with_threads.h"
 
-namespace molten {
+namespace molten::sleep_test {
 namespace {
 
 using namespace particle_sets;
@@ -358,4 +358,4 @@ TYPED_TEST(SleepOf, ActiveParticlesFindNeighboursInAllBlocks) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::sleep_test

@@ -1,7 +1,7 @@
 // The study's command line: its CSV, what it refuses, and a run that diverges.
 #include "tests/program.h"
 
-namespace molten {
+namespace molten::study_program_test {
 namespace {
 
 Outcome study_program(const std::vector<std::string>& arguments) { return Program(arguments, {}, MOLTEN_STUDY).wait(); }
@@ -75,4 +75,4 @@ TEST(StudyProgram, ARunThatDivergesIsNotANumberAndExitsWithFour) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::study_program_test

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "tests/temp_folder.h"
 
-namespace molten::study {
+namespace molten::study::study_reference_test {
 namespace {
 
 /// MOLTEN_REFERENCE as this test wants it.
@@ -142,4 +142,4 @@ TEST(StudyExperiments, ScoresOfTheFirstMomentAreThoseByHand) {
 }
 
 }  // namespace
-}  // namespace molten::study
+}  // namespace molten::study::study_reference_test

@@ -15,7 +15,7 @@
 #include "bench/study/wave_fit.h"
 #include "bench/study/wave_theory.h"
 
-namespace molten::study {
+namespace molten::study::study_test {
 namespace {
 
 // ---- metrics --------------------------------------------------------------------------------------------------------
@@ -309,4 +309,4 @@ TEST(StudyCases, SettingsReachTheProblem) {
 }
 
 }  // namespace
-}  // namespace molten::study
+}  // namespace molten::study::study_test

@@ -7,7 +7,7 @@
 
 #include "tests/contact_shapes.h"
 
-namespace molten {
+namespace molten::sweep_test {
 namespace {
 
 using contact_test::Random;
@@ -235,4 +235,4 @@ TEST(Sweep, AtRestMeetsNothing) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::sweep_test

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/temp_folder.h"
 
-namespace molten {
+namespace molten::terrain_test {
 namespace {
 
 const std::string header = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 10\nNODATA_value -9999\n";
@@ -152,4 +152,4 @@ TEST(TerrainModels, Volcano) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::terrain_test

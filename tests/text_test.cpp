@@ -14,7 +14,7 @@
 #include "io/scene/scene_file.h"
 #include "tests/temp_folder.h"
 
-namespace molten {
+namespace molten::text_test {
 namespace {
 
 Shape letters(const std::string& string, const std::string& font = "DejaVuSans-Bold.ttf") {
@@ -103,4 +103,4 @@ TEST(Text, BadFontsEndInOneLine) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::text_test

@@ -7,7 +7,7 @@
 #include "tests/particle_sets.h"
 #include "tests/with_threads.h"
 
-namespace molten {
+namespace molten::threads_test {
 namespace {
 
 using namespace particle_sets;
@@ -168,4 +168,4 @@ TYPED_TEST(ThreadsOf, TheBitsDoChangeWithTheState) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::threads_test

@@ -8,7 +8,7 @@
 #include "core/runge_kutta.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::time_step_test {
 namespace {
 
 using namespace particle_sets;
@@ -352,4 +352,4 @@ TEST_P(StandingWave, NoLengthGrows) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::time_step_test

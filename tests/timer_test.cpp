@@ -4,7 +4,7 @@
 
 #include <thread>
 
-namespace molten {
+namespace molten::timer_test {
 namespace {
 
 using namespace std::chrono;
@@ -42,4 +42,4 @@ TEST(Timer, ScopesAfterOneAnotherAddUp) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::timer_test

@@ -12,7 +12,7 @@
 #include "tests/flavours.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::vents_test {
 namespace {
 
 constexpr double spacing = 0.02;
@@ -138,4 +138,4 @@ TEST(VentFlow, WhatPassesAnOutflowIsGoneAndIdsGoOn) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::vents_test

@@ -10,7 +10,7 @@
 #include "tests/contact_shapes.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::wall_integrals_test {
 namespace {
 
 constexpr double smoothing_length = 1.3, reach = 2 * smoothing_length;
@@ -273,4 +273,4 @@ TEST(WallPatches, GiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::wall_integrals_test

@@ -6,7 +6,7 @@
 
 #include "bench/study/request.h"
 
-namespace molten::study {
+namespace molten::study::dias_test {
 namespace {
 
 std::map<std::string, double> errors_of(const std::string& name, std::int64_t particles,
@@ -33,4 +33,4 @@ TEST(SlowDias, WaterWithoutArtificialViscosityReachesTheWallAsThere) {
 }
 
 }  // namespace
-}  // namespace molten::study
+}  // namespace molten::study::dias_test

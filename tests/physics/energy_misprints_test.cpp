@@ -5,7 +5,7 @@
 
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::energy_misprints_test {
 namespace {
 
 using namespace particle_sets;
@@ -252,4 +252,4 @@ TEST(Misprints, SPHysicsRepulsionSumsToOne) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::energy_misprints_test

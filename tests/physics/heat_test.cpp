@@ -4,7 +4,7 @@
 
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::heat_test {
 namespace {
 
 using namespace physics_case;
@@ -220,4 +220,4 @@ TYPED_TEST(MeltingFront, FollowsTheTwoSlabsInContact) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::heat_test

@@ -5,7 +5,7 @@
 #include "core/physics/density_diffusion.h"
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::hydrostatic_test {
 namespace {
 
 using namespace physics_case;
@@ -138,4 +138,4 @@ TEST(SlowHydrostatic, TankOf40In3D) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::hydrostatic_test

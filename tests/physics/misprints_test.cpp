@@ -9,7 +9,7 @@
 #include "core/physics/rheology.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::misprints_test {
 namespace {
 
 using namespace particle_sets;
@@ -329,4 +329,4 @@ TEST(Misprints, Q_FigureThreeFourSmoothingLength) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::misprints_test

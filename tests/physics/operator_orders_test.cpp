@@ -8,7 +8,7 @@
 
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::operator_orders_test {
 namespace {
 
 using namespace physics_case;
@@ -83,4 +83,4 @@ TYPED_TEST(OperatorOrders, NoneWithoutCorrection) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::operator_orders_test

@@ -6,7 +6,7 @@
 #include "core/physics/viscous_stress.h"
 #include "tests/particle_sets.h"
 
-namespace molten {
+namespace molten::operators_test {
 namespace {
 
 using namespace particle_sets;
@@ -379,4 +379,4 @@ TYPED_TEST(OperatorsOf, XsphPullsTowardsTheMean) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::operators_test

@@ -4,7 +4,7 @@
 
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::slump_test {
 namespace {
 
 using namespace physics_case;
@@ -155,4 +155,4 @@ TEST(SlowSlump, AHighYieldStressHoldsForLong) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::slump_test

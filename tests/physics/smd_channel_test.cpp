@@ -8,7 +8,7 @@
 
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::smd_channel_test {
 namespace {
 
 using namespace physics_case;
@@ -226,4 +226,4 @@ TEST(SlowChannel, Viscoplastic15Finer) {
 TEST(SlowChannel, Viscoplastic150FromRest) { expect_within(run_channel<double>({.jump_number = 150}, 3), 0.075, 0.03); }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::smd_channel_test

@@ -7,7 +7,7 @@
 #include "io/scene/scene_file.h"
 #include "tests/with_threads.h"
 
-namespace molten {
+namespace molten::splash_test {
 namespace {
 
 /// A block falls over in a closed tank, 0.4 m wide, and has come to rest but for a slow sway.
@@ -44,4 +44,4 @@ TEST(SlowSplash, WaterDoesNotSwell) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::splash_test

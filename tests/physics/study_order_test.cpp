@@ -5,7 +5,7 @@
 
 #include "bench/study/request.h"
 
-namespace molten::study {
+namespace molten::study::study_order_test {
 namespace {
 
 /// The error of a quantity; by default of the first that the case judges.
@@ -106,4 +106,4 @@ TEST(SlowStudyOrder, CavityIsWithinItsReach) {
 }
 
 }  // namespace
-}  // namespace molten::study
+}  // namespace molten::study::study_order_test

@@ -8,7 +8,7 @@
 #include "io/scene/presets.h"
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::taylor_green_test {
 namespace {
 
 using namespace physics_case;
@@ -80,4 +80,4 @@ TEST(SlowTaylorGreen, DecaysWithinATenthOfAPercentAtAHundredASide) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::taylor_green_test

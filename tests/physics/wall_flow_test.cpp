@@ -3,7 +3,7 @@
 
 #include "tests/physics/case.h"
 
-namespace molten {
+namespace molten::wall_flow_test {
 namespace {
 
 using namespace physics_case;
@@ -146,4 +146,4 @@ TEST(WallFlow, AnInsulatedWallLetsNoHeatPass) {
 }
 
 }  // namespace
-}  // namespace molten
+}  // namespace molten::wall_flow_test
