@@ -136,8 +136,8 @@ Scene with_moving_wall(Scene scene) {
   scene.boundaries.push_back(ball);
   return scene;
 }
-/// Numerics as f(numerics) makes them.
-template <class F> Scene with_numerics(Scene scene, F f) {
+/// The scene with numerics as f(numerics) makes them.
+template <class F> Scene also(Scene scene, F f) {
   f(scene.numerics);
   return scene;
 }
@@ -168,7 +168,6 @@ std::vector<Comparison> comparisons() {
       [](const S& s) { return LaminarViscosity<float>(s.parameters.viscosity, s.parameters.eos.rest_density); });
   const Step xsph = forces_and([](const S& s) { return XsphTerm<float>(true, s.parameters.eos.rest_density); });
   const Step basic = [](S& s) { minimal_step(s, false, Continuity{}, PressureForce{}, Always(artificial(s))); };
-  const auto also = [](const Scene& scene, auto f) { return with_numerics(scene, f); };
   return {
       {"heat", with_smd(plain()), with_heat(with_smd(plain())), stress},
       {"smd_stress", with_heat(plain()), with_smd(with_heat(plain())), heat},
