@@ -27,6 +27,7 @@ struct MeshFile {
       position{};       // m; where the middle of the mesh's base goes, when `height` or `position` is given
   bool placed = false;  // position was given
   std::array<double, 3> rotation{};  // degrees about x, then y, then z, before scaling and placing
+  Place place;
 };
 struct Sphere {
   std::array<double, 3> center{};  // m
@@ -63,6 +64,7 @@ struct Terrain {
   std::optional<double> cell_size;              // m between samples; required for JSON unless the file has it
   double scale = 1;                             // factor on heights
   std::optional<std::array<double, 2>> origin;  // m; x, y of the south-west sample; default: as the file has it
+  Place place;
 };
 
 /// At most one member is set; which one says what the shape is.

@@ -17,6 +17,10 @@ using molten::ExitCode;
 
 constexpr int most_threads = 4096;
 
+/// For options whose default is meant only where they are not given.
+const CLI::Validator not_empty([](const std::string& text) { return text.empty() ? "is empty; leave it out" : ""; },
+                               "");
+
 /// One subcommand: its options and what it does.
 struct Commands {
   std::string scene, other;
@@ -31,7 +35,8 @@ void add_run(CLI::App& app, Commands& c) {
   CLI::App* run =
       app.add_subcommand("run", "Run a scene\n  molten run scenes/bunny.toml -o runs/bunny --set run.end_time=0.1");
   run->add_option("scene", c.scene, "Scene file (TOML; docs/scenes.md)")->required();
-  run->add_option("-o,--output", c.run.folder, "Folder of the run (default: runs/<name of the scene>)");
+  run->add_option("-o,--output", c.run.folder, "Folder of the run (default: runs/<name of the scene>)")
+      ->check(not_empty);
   run->add_option("--threads", c.run.threads, "Threads (default: OMP_NUM_THREADS or all cores)")
       ->check(CLI::Range(1, most_threads));
   run->add_option("--set", c.overrides, "Override a key of the scene; again for each more")
@@ -80,10 +85,11 @@ void add_render(CLI::App& app, Commands& c) {
       app.add_subcommand("render", "Draw frames to PNG\n  molten render runs/bunny --frames last --field temperature");
   molten::PictureOptions& p = c.render.picture;
   render->add_option("run", c.render.run, "Folder of the run")->required();
-  render->add_option("-o,--output", c.render.output, "Folder for the pictures (default: RUN/pictures)");
+  render->add_option("-o,--output", c.render.output, "Folder for the pictures (default: RUN/pictures)")
+      ->check(not_empty);
   render->add_option("--frames", c.render.frames, "all, last, numbers 0,10,20 or a range 0:100:10")
       ->capture_default_str();
-  render->add_option("--field", p.field, "Field to colour by (default: temperature, else speed)");
+  render->add_option("--field", p.field, "Field to colour by (default: temperature, else speed)")->check(not_empty);
   render->add_option("--range", p.range, "Lowest and highest value of the colours")->delimiter(',');
   render->add_option("--eye", p.eye, "Where the camera is: x y z, m")->delimiter(',');
   render->add_option("--look-at", p.look_at, "Where it looks: x y z, m")->delimiter(',');

@@ -91,8 +91,11 @@ std::string inside_out(const std::string& mesh) {
 }
 
 TEST_F(BadFile, MissingMesh) {
-  expect_bad(mesh_scene("nowhere.obj"), 3, {"nowhere.obj", "no such file"});
-  expect_bad(mesh_scene("models/nowhere.obj"), 3, {"models/nowhere.obj", "scripts/models"});
+  expect_bad(mesh_scene("nowhere.obj"), 3, {"my scene.toml:2:", "nowhere.obj: check the path"});
+  expect_bad(mesh_scene("models/nowhere.obj"), 3, {"my scene.toml:2:", "models/nowhere.obj", "scripts/models"});
+  expect_bad(replaced(mesh_scene("none"), "mesh = \"none\"", "box = { min = [0, 0, 0], max = [1, 1, 1] }") +
+                 "[[boundary]]\nterrain = \"models/nowhere.json\"\n",
+             3, {"my scene.toml:7:", "models/nowhere.json", "scripts/models"});
 }
 
 TEST_F(BadFile, MeshesThatEncloseNothing) {

@@ -28,9 +28,11 @@ TEST_F(CommandLine, MistakesAreOneLine) {
                                                           {"run", there, "--threads", "two"},
                                                           {"run", there, "--set"},
                                                           {"run", there, "--bogus"},
+                                                          {"run", there, "-o", ""},
                                                           {"resume"},
                                                           {"compare", there},
-                                                          {"render", there, "--width", "1"}};
+                                                          {"render", there, "--width", "1"},
+                                                          {"render", there, "--field", ""}};
   for (const auto& mistake : mistakes) {
     const Outcome o = molten_program(mistake, folder.path());
     expect_refused(o, 2, {"--help"});

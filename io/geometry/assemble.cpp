@@ -58,13 +58,14 @@ void place(TriangleMesh& mesh, const MeshFile& file) {
 }  // namespace
 
 TriangleMesh placed_mesh(const Scene& scene, const MeshFile& file, const std::function<void()>& waiting) {
-  TriangleMesh mesh = read_mesh(locate(scene, file.path), waiting);
+  TriangleMesh mesh = read_mesh(find_file(scene, file.path, file.place), waiting);
   place(mesh, file);
   return mesh;
 }
 
 TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, Demand demand) {
-  if (shape.terrain) return triangulate(read_terrain(*shape.terrain, locate(scene, shape.terrain->path)));
+  if (shape.terrain)
+    return triangulate(read_terrain(*shape.terrain, find_file(scene, shape.terrain->path, shape.terrain->place)));
   if (shape.text) {
     TriangleMesh letters = extrude_text(scene, shape);
     MeshFile where;
@@ -73,7 +74,7 @@ TriangleMesh surface(const Scene& scene, const Shape& shape, double spacing, Dem
     return letters;
   }
   if (!shape.mesh) return tessellate(shape, facet_edge * spacing);
-  const auto file = locate(scene, shape.mesh->path);
+  const auto file = find_file(scene, shape.mesh->path, shape.mesh->place);
   TriangleMesh mesh = read_mesh(file);
   if (demand == Demand::closed) require_closed(mesh, file.string());
   if (demand == Demand::vessel)

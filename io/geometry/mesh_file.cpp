@@ -51,10 +51,7 @@ std::string extension_of(const fs::path& file) {
 std::string bytes_of(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) {
-    const bool fetched = file.generic_string().find("models/") != std::string::npos;
-    refuse(file, fetched ? "no such file: run scripts/models to fetch the models" : "no such file: check the path");
-  }
+  if (!fs::exists(status)) refuse(file, "no such file: check the path");
   if (!fs::is_regular_file(status)) refuse(file, "not a file: give an OBJ, STL, PLY or GLB file");
   const std::uintmax_t size = fs::file_size(file, error);
   if (error || size > largest_file) refuse(file, "larger than 4 GiB: reduce the mesh");

@@ -36,7 +36,7 @@ Test test_of_plane(const Plane& plane, int dimensions) {
 }
 
 Test test_of_terrain(const Scene& scene, const Terrain& terrain) {
-  return [grid = read_terrain(terrain, locate(scene, terrain.path))](const Place3& x) {
+  return [grid = read_terrain(terrain, find_file(scene, terrain.path, terrain.place))](const Place3& x) {
     const double c = (x[0] - grid.origin[0]) / grid.cell_size, r = (x[1] - grid.origin[1]) / grid.cell_size;
     if (c < 0 || r < 0 || c >= grid.columns - 1 || r >= grid.rows - 1) return false;
     const int i = static_cast<int>(c), j = static_cast<int>(r);

@@ -31,10 +31,7 @@ using Json = nlohmann::json;
 
 std::string text_of(const fs::path& file) {
   std::error_code error;
-  if (!fs::exists(file, error)) {
-    const bool fetched = file.generic_string().find("models/") != std::string::npos;
-    refuse(file, fetched ? "no such file: run scripts/models to fetch the models" : "no such file: check the path");
-  }
+  if (!fs::exists(file, error)) refuse(file, "no such file: check the path");
   std::ifstream in(file, std::ios::binary);
   if (!fs::is_regular_file(file, error) || !in) refuse(file, "cannot be read: give a height grid (.asc or .json)");
   std::string text((std::istreambuf_iterator<char>(in)), {});

@@ -58,8 +58,7 @@ void read_head(const TomlReader& root, Scene& scene) {
   }
   if (scene.dimensions == 2) scene.gravity = {0, -9.81, 0};
   if (!keys) return;
-  keys->numbers("gravity", std::span(scene.gravity).first(static_cast<std::size_t>(scene.dimensions)),
-                Range::any("m/s²"));
+  keys->vector("gravity", scene.gravity, scene.dimensions, Range::any("m/s²"));
   if (keys->has("domain")) scene.domain = read_box(*keys, "domain", scene.dimensions);
   read_periodic(*keys, scene);
 }
@@ -108,7 +107,7 @@ Boundary read_boundary(const TomlReader& keys, int dimensions) {
   if (keys.has("slip") && (boundary.friction || boundary.yield_stress)) {
     keys.fail("slip", "stands beside friction or yield_stress, which say how it slips; keep one of them");
   }
-  keys.numbers("velocity", std::span(boundary.velocity).first(static_cast<std::size_t>(dimensions)), Range::any("m/s"));
+  keys.vector("velocity", boundary.velocity, dimensions, Range::any("m/s"));
   keys.number("temperature", boundary.temperature, Range::any("the scene's temperature unit"));
   read_ground(keys, boundary);
   read_motion(keys, dimensions, boundary);
@@ -235,6 +234,16 @@ std::filesystem::path locate(const Scene& scene, const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(beside, error) && std::filesystem::exists(above, error)) return above.lexically_normal();
   return beside;
+}
+
+std::filesystem::path find_file(const Scene& scene, const std::string& path, const Place& place) {
+  const std::filesystem::path file = locate(scene, path);
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) return file;
+  const bool fetched = path.find("models/") != std::string::npos;
+  throw Error(ExitCode::geometry,
+              one_line(fmt::format("{}: no such file as {}: {}", text_of(place), file.string(),
+                                   fetched ? "run scripts/models to fetch the models" : "check the path")));
 }
 
 }  // namespace molten

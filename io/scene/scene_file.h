@@ -22,4 +22,8 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
 /// that exists, else the path beside the scene file.
 std::filesystem::path locate(const Scene& scene, const std::string& path);
 
+/// The same for a mesh or a terrain, which must be there. Throws Error(geometry): one line with where the scene asks
+/// for it, and what to do.
+std::filesystem::path find_file(const Scene& scene, const std::string& path, const Place& place);
+
 }  // namespace molten

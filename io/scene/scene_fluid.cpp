@@ -22,7 +22,7 @@ const TomlReader::Keys rheology_keys = {"model",
 const TomlReader::Keys heat_keys = {"diffusivity", "melting_range", "initial"};
 
 void read_velocity(const TomlReader& keys, int dimensions, Body& body) {
-  keys.numbers("velocity", std::span(body.velocity).first(static_cast<std::size_t>(dimensions)), Range::any("m/s"));
+  keys.vector("velocity", body.velocity, dimensions, Range::any("m/s"));
 }
 
 /// Either [fluid] itself has the shape, or its [[fluid.body]] tables have one each; with vents there need be none.

@@ -7,10 +7,6 @@
 namespace molten {
 namespace {
 
-std::span<double> components(std::array<double, 3>& vector, int dimensions) {
-  return std::span(vector).first(static_cast<std::size_t>(dimensions));
-}
-
 /// [x, y, z] in 3-D, one number about z in 2-D.
 void read_spin(const TomlReader& keys, int dimensions, std::array<double, 3>& spin) {
   if (dimensions == 2)
@@ -44,10 +40,10 @@ void read_key_frames(const TomlReader& keys, int dimensions, Movement& motion) {
 Movement read_movement(const TomlReader& boundary_keys, int dimensions) {
   const TomlReader keys = *boundary_keys.table("motion", {"velocity", "spin", "centre", "key_frames"});
   Movement motion;
-  keys.numbers("velocity", components(motion.velocity, dimensions), Range::any("m/s"));
+  keys.vector("velocity", motion.velocity, dimensions, Range::any("m/s"));
   read_spin(keys, dimensions, motion.spin);
   std::array<double, 3> centre{};
-  if (keys.numbers("centre", components(centre, dimensions), Range::any("m"))) motion.centre = centre;
+  if (keys.vector("centre", centre, dimensions, Range::any("m"))) motion.centre = centre;
   read_key_frames(keys, dimensions, motion);
   if (!keys.has("velocity") && !keys.has("spin") && !keys.has("key_frames"))
     boundary_keys.fail("motion", "says nothing of how it moves; give velocity, spin or key_frames, or leave it out");
@@ -59,7 +55,7 @@ FreeBody read_body(const TomlReader& boundary_keys, int dimensions) {
   FreeBody body;
   keys.require("density", "give the body's mean density in kg/m³");
   keys.number("density", body.density, Range::positive("kg/m³"));
-  keys.numbers("velocity", components(body.velocity, dimensions), Range::any("m/s"));
+  keys.vector("velocity", body.velocity, dimensions, Range::any("m/s"));
   read_spin(keys, dimensions, body.spin);
   return body;
 }

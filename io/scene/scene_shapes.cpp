@@ -16,15 +16,6 @@ constexpr std::array<std::string_view, 9> shape_keys = {"mesh",    "sphere", "bo
 constexpr std::array<std::string_view, 3> mesh_keys = {"height", "position", "rotation"};
 constexpr std::array<std::string_view, 3> terrain_keys = {"cell_size", "scale", "origin"};
 
-std::span<double> components(std::array<double, 3>& vector, int dimensions) {
-  return std::span(vector).first(static_cast<std::size_t>(dimensions));
-}
-
-void read_point(const TomlReader& table, std::string_view key, std::array<double, 3>& point, int dimensions) {
-  table.require(key, dimensions == 3 ? "give [x, y, z] in m" : "give [x, y] in m");
-  table.numbers(key, components(point, dimensions), Range::any("m"));
-}
-
 void read_length(const TomlReader& table, std::string_view key, double& length) {
   table.require(key, "give it in m");
   table.number(key, length, Range::positive("m"));
@@ -32,6 +23,7 @@ void read_length(const TomlReader& table, std::string_view key, double& length) 
 
 MeshFile read_mesh_keys(const TomlReader& table) {
   MeshFile mesh;
+  mesh.place = table.place("mesh");
   table.text("mesh", mesh.path);
   table.number("height", mesh.height, Range::positive("m"));
   mesh.placed = table.numbers("position", mesh.position, Range::any("m"));
@@ -41,6 +33,7 @@ MeshFile read_mesh_keys(const TomlReader& table) {
 
 Terrain read_terrain_keys(const TomlReader& table) {
   Terrain terrain;
+  terrain.place = table.place("terrain");
   table.text("terrain", terrain.path);
   table.number("cell_size", terrain.cell_size, Range::positive("m"));
   table.number("scale", terrain.scale, Range::positive(""));
@@ -167,7 +160,7 @@ Plane read_plane(const TomlReader& table, int dimensions) {
   Plane plane;
   read_point(keys, "point", plane.point, dimensions);
   keys.require("normal", "give the direction from the plane into the fluid");
-  keys.numbers("normal", components(plane.normal, dimensions), Range::any(""));
+  keys.vector("normal", plane.normal, dimensions, Range::any(""));
   if (std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]) < 1e-12) {
     keys.fail("normal", "has no length; give the direction from the plane into the fluid");
   }
@@ -215,6 +208,11 @@ TomlReader::Keys with_shape_keys(TomlReader::Keys keys) {
   keys.insert(keys.end(), mesh_keys.begin(), mesh_keys.end());
   keys.insert(keys.end(), terrain_keys.begin(), terrain_keys.end());
   return keys;
+}
+
+void read_point(const TomlReader& table, std::string_view key, std::array<double, 3>& point, int dimensions) {
+  table.require(key, dimensions == 3 ? "give [x, y, z] in m" : "give [x, y] in m");
+  table.vector(key, point, dimensions, Range::any("m"));
 }
 
 bool has_shape(const TomlReader& table) {

@@ -9,22 +9,17 @@
 namespace molten {
 namespace {
 
-std::span<double> components(std::array<double, 3>& vector, int dimensions) {
-  return std::span(vector).first(static_cast<std::size_t>(dimensions));
-}
-
 void read_direction(const TomlReader& keys, int dimensions, std::array<double, 3>& normal, std::string_view where) {
   normal = {};
   keys.require("normal", fmt::format("give the direction {}", where));
-  keys.numbers("normal", components(normal, dimensions), Range::any(""));
+  keys.vector("normal", normal, dimensions, Range::any(""));
   if (std::hypot(normal[0], normal[1], normal[2]) < 1e-12)
     keys.fail("normal", fmt::format("has no length; give the direction {}", where));
 }
 
 void read_disc(const TomlReader& vent_keys, int dimensions, Vent& vent) {
   const TomlReader keys = *vent_keys.table("disc", {"centre", "normal", "radius"});
-  keys.require("centre", dimensions == 3 ? "give [x, y, z] in m" : "give [x, y] in m");
-  keys.numbers("centre", components(vent.centre, dimensions), Range::any("m"));
+  read_point(keys, "centre", vent.centre, dimensions);
   read_direction(keys, dimensions, vent.normal, "that the fluid goes");
   keys.require("radius", "give it in m");
   keys.number("radius", vent.radius, Range::positive("m"));
@@ -68,8 +63,7 @@ Plane read_outflow(const TomlReader& outflow_keys, int dimensions) {
   outflow_keys.require("plane", "give { point, normal }");
   const TomlReader keys = *outflow_keys.table("plane", {"point", "normal"});
   Plane plane;
-  keys.require("point", dimensions == 3 ? "give [x, y, z] in m" : "give [x, y] in m");
-  keys.numbers("point", components(plane.point, dimensions), Range::any("m"));
+  read_point(keys, "point", plane.point, dimensions);
   read_direction(keys, dimensions, plane.normal, "to the side where fluid is removed");
   return plane;
 }

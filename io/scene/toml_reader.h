@@ -45,6 +45,10 @@ class TomlReader {
   bool number(std::string_view key, double& value, const Range& range) const;
   bool number(std::string_view key, std::optional<double>& value, const Range& range) const;
   bool numbers(std::string_view key, std::span<double> values, const Range& range) const;
+  /// What a vector has in so many dimensions.
+  bool vector(std::string_view key, std::array<double, 3>& value, int dimensions, const Range& range) const {
+    return numbers(key, std::span(value).first(static_cast<std::size_t>(dimensions)), range);
+  }
   bool whole(std::string_view key, long long& value, long long low, long long high) const;
   bool flag(std::string_view key, bool& value) const;
   bool text(std::string_view key, std::string& value) const;
