@@ -95,8 +95,8 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
     pass(MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
          StressForce<Dim, Real>(f.stress && !f.pairwise_stress, rho0, p.kernel_second_moment),
          PairwiseStress<Dim, Real>(f.pairwise_stress, !f.heat, rho0),
-         HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0), diffusion, coupling,
-         XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
+         HeatConduction<Real, corrected, true>(f.heat ? p.diffusivity : 0, rho0, f.varied_conduction), diffusion,
+         coupling, XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
   else if (coupling.on || diffusion.on)
     pass(diffusion, coupling);
   else

@@ -42,6 +42,20 @@ void require_sensible_density(const Scene& scene) {
   require_absent(scene.fluid.hydrostatic, "fluid.hydrostatic", "sets a density at the start that is lost to");
 }
 
+void require_sensible_laplacian(const Scene& scene) {
+  const Numerics& n = scene.numerics;
+  const std::string key = "numerics.laplacian";
+  if (!n.gradient_correction)
+    refuse(scene, key, "\"consistent\" needs corrected gradients; add gradient_correction = true to [numerics]");
+  if (n.viscosity_form != ViscosityForm::morris)
+    refuse(scene, key, "\"consistent\" is one with viscosity_form \"morris\"; leave one of the two out");
+  for (const Body& body : scene.fluid.bodies)
+    if (body.diffusivity)
+      refuse(scene, key, "\"consistent\" takes one diffusivity for all; leave it or the bodies' own out");
+  if (n.wall_support && !scene.boundaries.empty())
+    refuse(scene, key, "\"consistent\" knows nothing of the support of walls; leave it or wall_support out");
+}
+
 void require_sensible_numerics(const Scene& scene) {
   const Numerics& n = scene.numerics;
   if (n.particle_sound_speed && (n.state_equation != StateEquation::tait || n.gamma != 7))
@@ -52,6 +66,7 @@ void require_sensible_numerics(const Scene& scene) {
   if (n.stress_form == StressForm::pairwise && !scene.fluid.rheology.constant() && !n.gradient_correction)
     refuse(scene, "numerics.stress_form",
            "\"pairwise\" needs corrected gradients; add gradient_correction = true to [numerics]");
+  if (n.laplacian == LaplacianForm::consistent) require_sensible_laplacian(scene);
   if (n.internal_energy && n.integrator == IntegratorKind::energy_bounded_euler)
     refuse(scene, "numerics.internal_energy",
            "takes up the work of whole forces, and energy_bounded_euler lets parts of them act; leave it out or choose "
@@ -142,7 +157,8 @@ void require_sensible_boundary_particles(const Scene& scene) {
 void require_one_pass(const Scene& scene, const Features& f) {
   if (!f.any_seldom()) return;
   for (const auto& [there, key] : {std::pair{f.wall_support, "numerics.wall_support"},
-                                   std::pair{f.density_diffusion, "numerics.density_diffusion"}})
+                                   std::pair{f.density_diffusion, "numerics.density_diffusion"},
+                                   std::pair{f.consistent_laplacian, "numerics.laplacian"}})
     if (there)
       refuse(scene, key, "does not go together with the methods kept for replication; leave one of the two out");
 }
@@ -186,6 +202,8 @@ Features features_of(const Scene& scene) {
   require_sensible_boundary_particles(scene);
   Features f;
   f.heat = scene.fluid.heat.has_value();
+  f.varied_conduction = f.heat && std::any_of(scene.fluid.bodies.begin(), scene.fluid.bodies.end(),
+                                              [](const Body& b) { return b.diffusivity.has_value(); });
   f.stress = !scene.fluid.rheology.constant();
   f.smd = scene.fluid.rheology.model == Rheology::Model::smd;
   f.laminar = !f.stress && scene.fluid.rheology.viscosity > 0;
@@ -200,6 +218,7 @@ Features features_of(const Scene& scene) {
   f.density_sum = scene.numerics.density == DensityForm::summation;
   f.density_filter = scene.numerics.density_filter.has_value();
   f.gradient_correction = scene.numerics.gradient_correction;
+  f.consistent_laplacian = scene.numerics.laplacian == LaplacianForm::consistent && (f.heat || f.laminar);
   f.shifting = scene.numerics.shifting.has_value();
   f.density_coupling = f.shifting && scene.numerics.shifting->coupling > 0 && has_border(scene);
   f.contact = !scene.boundaries.empty();
@@ -236,6 +255,7 @@ FieldSet Features::columns() const {
   if (stages() > 2) s |= field_set(FieldList<PositionSlope, VelocitySlope, CompressionSlope>{});
   if (stages() > 2 && heat) s |= field_set(FieldList<TemperatureSlope>{});
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
+  if (varied_conduction) s |= field_set(FieldList<Conductivity>{});
   if (stress) s |= field_set(FieldList<Viscosity>{});
   if (stress && !pairwise_stress) s |= field_set(FieldList<Stress>{});
   if (pairwise_stress) s |= field_set(FieldList<StrainRate, Vorticity, Thinning, Inner>{});
@@ -243,7 +263,9 @@ FieldSet Features::columns() const {
   if (internal_energy) s |= field_set(FieldList<InternalEnergy, InternalEnergyRate>{});
   if (density_filter) s |= field_set(FieldList<FilteredCompression>{});
   if (gradient_correction) s |= field_set(FieldList<Correction>{});
-  if (gradient_correction && (heat || laminar || pairwise_stress)) s |= field_set(FieldList<LaplacianCorrection>{});
+  const bool factors = pairwise_stress || (!consistent_laplacian && (heat || laminar));
+  if (gradient_correction && factors) s |= field_set(FieldList<LaplacianCorrection>{});
+  if (consistent_laplacian) s |= field_set(FieldList<LaplacianTilt, LaplacianBend>{});
   if (shifting) s |= field_set(FieldList<ShiftVelocity>{});
   if (density_coupling) s |= field_set(FieldList<CouplingRate>{});
   if (sleep) s |= field_set(FieldList<RestTime>{});
@@ -271,6 +293,7 @@ std::vector<std::string> Features::passes() const {
 
 std::vector<std::string> Features::names() const {
   const std::pair<bool, const char*> all[] = {{heat, "heat"},
+                                              {varied_conduction, "varied-conduction"},
                                               {stress, smd ? "smd-viscosity" : "varying-viscosity"},
                                               {laminar, "laminar-viscosity"},
                                               {artificial_viscosity, "artificial-viscosity"},
@@ -285,6 +308,7 @@ std::vector<std::string> Features::names() const {
                                               {density_sum, "density-summation"},
                                               {density_filter, "density-filter"},
                                               {gradient_correction, "gradient-correction"},
+                                              {consistent_laplacian, "consistent-laplacian"},
                                               {shifting, "shifting"},
                                               {density_coupling, "density-coupling"},
                                               {contact, "contact"},

@@ -11,11 +11,12 @@
 namespace molten {
 
 struct Features {
-  bool heat = false;             // temperature and its conduction
-  bool stress = false;           // viscosity that varies: strain-rate pass and stress
-  bool pairwise_stress = false;  // its form for corrected gradients
-  bool smd = false;              // that of de Souza Mendes and Dutra
-  bool laminar = false;          // constant viscosity
+  bool heat = false;               // temperature and its conduction
+  bool varied_conduction = false;  // bodies differ in it
+  bool stress = false;             // viscosity that varies: strain-rate pass and stress
+  bool pairwise_stress = false;    // its form for corrected gradients
+  bool smd = false;                // that of de Souza Mendes and Dutra
+  bool laminar = false;            // constant viscosity
   bool artificial_viscosity = false;
   bool particle_sound_speed = false;
   bool tensile_correction = false;
@@ -27,6 +28,7 @@ struct Features {
   bool density_sum = false;     // density by summation
   bool density_filter = false;  // every so many steps
   bool gradient_correction = false;
+  bool consistent_laplacian = false;
   bool shifting = false;
   bool density_coupling = false;    // of shifted particles, to that of their places
   bool contact = false;             // walls
@@ -48,7 +50,8 @@ struct Features {
   /// Beside the basic ones, one force only, XSPH or heat, or both that melting takes: passes with nothing else serve.
   bool only_one_more_force() const {
     const int more = stress + heat + (laminar && !monaghan_viscosity) + xsph;
-    return !density_diffusion && !monaghan_viscosity && (more == 1 || (more == 2 && stress && heat));
+    return !density_diffusion && !monaghan_viscosity && !varied_conduction &&
+           (more == 1 || (more == 2 && stress && heat));
   }
 
   /// How often a step finds rates: once, or once a stage of a Runge-Kutta method.

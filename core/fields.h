@@ -10,8 +10,8 @@
 
 namespace molten {
 
-enum class FieldShape { scalar, vector, tensor };  // tensor: symmetric
-enum class Storage { real, exact, id };            // real: the run's precision; exact: double; id: 64-bit integer
+enum class FieldShape { scalar, vector, tensor, third, fourth };  // tensor and beyond: symmetric, of that rank
+enum class Storage { real, exact, id };  // real: the run's precision; exact: double; id: 64-bit integer
 
 enum class Lifetime { run, step };  // step: made anew before each use, so it need not follow a sort
 
@@ -26,6 +26,8 @@ using VectorField = Field<FieldShape::vector, Storage::real>;
 using StepScalar = Field<FieldShape::scalar, Storage::real, Lifetime::step>;
 using StepVector = Field<FieldShape::vector, Storage::real, Lifetime::step>;
 using StepTensor = Field<FieldShape::tensor, Storage::real, Lifetime::step>;
+using StepThird = Field<FieldShape::third, Storage::real, Lifetime::step>;
+using StepFourth = Field<FieldShape::fourth, Storage::real, Lifetime::step>;
 
 #define MOLTEN_FIELD(Type, Base, tag, unit_, meaning_)    \
   struct Type : Base {                                    \
@@ -45,6 +47,8 @@ MOLTEN_FIELD(Position, ExactVector, position, "m", "position");
 MOLTEN_FIELD(Velocity, VectorField, velocity, "m/s", "velocity at the time of the rates");
 MOLTEN_FIELD(Compression, ScalarField, compression, "1", "density / rest density - 1");
 MOLTEN_FIELD(Temperature, ExactScalar, temperature, "degrees", "temperature");
+
+MOLTEN_FIELD(Conductivity, ScalarField, conductivity, "1", "thermal conductivity over that of the scene");
 
 MOLTEN_FIELD(Inlet, IdScalar, inlet, "1", "number of the vent that still pushes the particle; -1: none");
 
@@ -85,6 +89,8 @@ MOLTEN_FIELD(EnergyShare, StepScalar, energy_share, "1", "share of the accelerat
 MOLTEN_FIELD(FilteredCompression, StepScalar, filtered_compression, "1", "compression after the density filter");
 MOLTEN_FIELD(Correction, StepTensor, correction, "1", "kernel-gradient correction L");
 MOLTEN_FIELD(LaplacianCorrection, StepScalar, laplacian_correction, "1", "factor that makes Laplacians whole");
+MOLTEN_FIELD(LaplacianTilt, StepVector, laplacian_tilt, "1/m", "linear part of what the weights of Laplacians gain");
+MOLTEN_FIELD(LaplacianBend, StepTensor, laplacian_bend, "1/m2", "quadratic part of it");
 MOLTEN_FIELD(Inner, StepScalar, inner, "1", "1: deep in the fluid; 0: at its surface");
 MOLTEN_FIELD(ShiftVelocity, StepVector, shift_velocity, "m/s", "velocity of the particle less that of the fluid");
 MOLTEN_FIELD(CouplingRate, StepScalar, coupling_rate, "1/s", "what the places lack in compression, times a rate");
@@ -102,6 +108,9 @@ MOLTEN_FIELD(EarlierChange, StepVector, earlier_change, "m/s", "the same, one st
 
 // Sums that a pass uses up itself; never a column.
 MOLTEN_FIELD(Moment, StepTensor, moment, "kg/m3", "sum of m_j grad W times x_ij, for the correction");
+MOLTEN_FIELD(FirstMoment, StepVector, first_moment, "kg/m4", "sum of m_j W'/r times x_ij, for consistent Laplacians");
+MOLTEN_FIELD(ThirdMoment, StepThird, third_moment, "kg/m2", "sum of m_j W'/r times x_ij x_ij x_ij");
+MOLTEN_FIELD(FourthMoment, StepFourth, fourth_moment, "kg/m", "sum of m_j W'/r times x_ij x_ij x_ij x_ij");
 MOLTEN_FIELD(CrowdingGradient, StepVector, crowding_gradient, "kg/m4", "sum of m_j grad W, for shifting");
 MOLTEN_FIELD(Parting, StepVector, parting, "kg/m4", "the same of neighbours that are too near, with weights");
 MOLTEN_FIELD(KernelSum, StepScalar, kernel_sum, "kg/m3", "sum of m W, with weights");
@@ -122,7 +131,8 @@ using AllFields =
               BasePosition, BaseVelocity, BaseCompression, BaseTemperature, PositionSlope, VelocitySlope,
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
               RestTime, HeatRestTime, RestTemperature, Inlet, Held, StrainRate, Vorticity, Thinning, Inner,
-              CouplingRate, StiffAcceleration, StartVelocity, StageChange, EarlierChange>;
+              CouplingRate, StiffAcceleration, StartVelocity, StageChange, EarlierChange, LaplacianTilt, LaplacianBend,
+              Conductivity>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 
@@ -155,10 +165,14 @@ template <class... A, class B> inline constexpr bool disjoint<FieldList<A...>, B
 
 // ---- shapes ---------------------------------------------------------------------------------------------------------
 
-template <class F, int Dim>
-inline constexpr int components = F::shape == FieldShape::scalar   ? 1
-                                  : F::shape == FieldShape::vector ? Dim
-                                                                   : Dim*(Dim + 1) / 2;
+/// Components of a symmetric tensor of a rank, which are the products of so many components of a vector.
+constexpr int monomial_count(int dim, int rank) {
+  int count = 1;
+  for (int k = 1; k <= rank; ++k) count = count * (dim + k - 1) / k;
+  return count;
+}
+
+template <class F, int Dim> inline constexpr int components = monomial_count(Dim, static_cast<int>(F::shape));
 
 template <class List, int Dim> inline constexpr int total_components = 0;
 template <class... F, int Dim>
@@ -170,8 +184,9 @@ using stored_t = std::conditional_t<F::storage == Storage::real, Real,
 
 /// A field's value for one particle (T = Real) or for a lane bundle (T = Lanes).
 template <class F, int Dim, class T>
-using value_t = std::conditional_t<F::shape == FieldShape::scalar, T,
-                                   std::conditional_t<F::shape == FieldShape::vector, Vec<Dim, T>, SymTensor<Dim, T>>>;
+using value_t = std::conditional_t<
+    F::shape == FieldShape::scalar, T,
+    std::conditional_t<F::shape == FieldShape::tensor, SymTensor<Dim, T>, Vec<components<F, Dim>, T>>>;
 
 /// Component k of a value of any shape.
 template <class T> T& component(T& v, int) requires(!requires { v.c; }) { return v; }

@@ -243,6 +243,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
       p.smd.melting_high = (*scene.fluid.heat->melting_range)[1];
     }
     p.reference_temperature = Temperatures(scene, start).middle();
+    for (const double ratio : start.conductivity) p.largest_conductivity = std::max(p.largest_conductivity, ratio);
   }
   p.artificial_viscosity = n.artificial_viscosity;
   p.density_diffusion = n.density_diffusion;

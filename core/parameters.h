@@ -34,6 +34,7 @@ template <int Dim> struct Parameters {
                                                   : viscosity_of(rheology, strain, temperature);
   }
   double diffusivity = 0, reference_temperature = 0;  // m²/s; T that local temperatures refer to
+  double largest_conductivity = 1;                    // of a particle over the scene's
   double artificial_viscosity = 0;                    // α
   double density_diffusion = 0;                       // δ
   double xsph = 0;                                    // ε
@@ -60,7 +61,9 @@ template <int Dim> double diffusion_limit(const Parameters<Dim>& p, double diffu
 }
 
 /// The largest time step of conduction (s).
-template <int Dim> double conduction_limit(const Parameters<Dim>& p) { return diffusion_limit(p, p.diffusivity); }
+template <int Dim> double conduction_limit(const Parameters<Dim>& p) {
+  return diffusion_limit(p, p.largest_conductivity * p.diffusivity);
+}
 
 /// What the start of a run is made of: the filled bodies, one entry a particle.
 struct Start {
@@ -68,6 +71,7 @@ struct Start {
   double measure = 0;                                     // m³ (2-D: m²) of all bodies
   std::vector<std::array<double, 3>> position, velocity;  // m, m/s
   std::vector<double> temperature;                        // empty without heat
+  std::vector<double> conductivity;                       // over the scene's; empty: that everywhere
   std::vector<std::array<double, 3>> vents;               // m; where fluid will enter
   double vent_speed = 0;                                  // m/s; the fastest that it will
 };

@@ -71,6 +71,7 @@ template <int Dim, class Real> void find_viscosity(State<Dim, Real>& s) {
 template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   const auto scope = s.timer.scope(s.features.heat ? "forces and heat" : "forces");
   if (s.features.any_seldom()) return seldom_rates_pass(s);
+  if (s.features.consistent_laplacian) return consistent_rates_pass(s);
   if (s.features.gradient_correction) return corrected_rates_pass(s);
   if (s.features.only_one_more_force()) return single_rates_pass(s);
   const Parameters<Dim>& p = s.parameters;
@@ -85,8 +86,8 @@ template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
     pass(artificial, LaminarViscosity<Real>(s.features.morris_viscosity() ? p.viscosity : 0, rho0),
          MonaghanViscosity<Dim, Real>(s.features.monaghan_viscosity ? p.viscosity : 0, rho0),
          StressForce<Dim, Real>(s.features.stress, rho0, p.kernel_second_moment),
-         HeatConduction<Real>(s.features.heat ? p.diffusivity : 0, rho0), diffusion,
-         XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
+         HeatConduction<Real, false, true>(s.features.heat ? p.diffusivity : 0, rho0, s.features.varied_conduction),
+         diffusion, XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
 }
 
 #define MOLTEN_INSTANTIATE(Dim, Real)              \

@@ -149,9 +149,10 @@ template <int Dim, class Real> ArtificialViscosity<Real> artificial_viscosity_of
 }
 
 /// The rates passes in files of their own: with one force beside the basic ones or with what melts, with corrected
-/// gradients, and with what few scenes ask for.
+/// gradients, with consistent Laplacians beside them, and with what few scenes ask for.
 template <int Dim, class Real> void single_rates_pass(State<Dim, Real>& s);
 template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s);
+template <int Dim, class Real> void consistent_rates_pass(State<Dim, Real>& s);
 template <int Dim, class Real> void seldom_rates_pass(State<Dim, Real>& s);
 
 }  // namespace molten

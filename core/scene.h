@@ -119,6 +119,7 @@ struct Body {
   Shape shape;
   std::array<double, 3> velocity{};   // m/s at the start
   std::optional<double> temperature;  // overrides Heat::initial_* for this body
+  std::optional<double> diffusivity;  // m²/s; overrides Heat::diffusivity: its conductivity differs
 };
 
 struct Fluid {
@@ -203,6 +204,7 @@ enum class IntegratorKind {
 };
 enum class ViscosityForm { morris, monaghan, muller };
 enum class StressForm { summed, pairwise };
+enum class LaplacianForm { conservative, consistent };
 enum class Precision { single, double_ };
 enum class Resort { when_due, each_step };
 
@@ -262,7 +264,8 @@ struct Numerics {
   DensityForm density = DensityForm::continuity;
   std::optional<DensityFilter> density_filter;
   bool gradient_correction = false;
-  std::optional<Shifting> shifting;  // needs gradient_correction
+  LaplacianForm laplacian = LaplacianForm::conservative;  // of conduction and constant viscosity
+  std::optional<Shifting> shifting;                       // needs gradient_correction
   double courant_sound = 0.2, courant_viscous = 0.1, courant_force = 0.25, courant_conduction = 0.4;
   double density_diffusion = 0;  // δ of δ-SPH; 0: no term
   bool wall_support = false;     // walls make up for what they cut off a particle's support

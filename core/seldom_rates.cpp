@@ -56,7 +56,7 @@ void seldom_pass(State<Dim, Real>& s, const Terms&... terms) {
                                MullerViscosity<Dim, Real>(f.muller_viscosity ? p.viscosity : 0, p.particle_mass, rho0,
                                                           p.support_radius),
                                StressForce<Dim, Real>(f.stress, rho0, p.kernel_second_moment)),
-                      HeatConduction<Real, corrected>(f.heat ? p.diffusivity : 0, rho0),
+                      HeatConduction<Real, corrected, true>(f.heat ? p.diffusivity : 0, rho0, f.varied_conduction),
                       XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density), terms...);
 }
 

@@ -125,6 +125,7 @@ State<Dim, Real> make_state(const Features& features, const Parameters<Dim>& par
       if (p.has(half_velocity)) p[half_velocity][d][k] = p[velocity][d][k];
     }
     if (p.has(temperature)) p[temperature][0][k] = start.temperature[k];
+    if (p.has(conductivity)) p[conductivity][0][k] = static_cast<Real>(start.conductivity[k]);
     if (!at_rest) continue;
     const Point<Dim> x = at_rest->place(start, k);
     for (int d = 0; d < Dim; ++d) p[position][d][k] = x[d];

@@ -180,6 +180,7 @@ template <int Dim, class Real> void insert_layer(State<Dim, Real>& s, std::size_
       if (p.has(half_velocity)) p[half_velocity][d][slot] = static_cast<Real>(v[d]);
     }
     if (p.has(temperature)) p[temperature][0][slot] = patch.temperature(time);
+    if (p.has(conductivity)) p[conductivity][0][slot] = 1;
   }
 }
 

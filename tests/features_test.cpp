@@ -101,6 +101,16 @@ TEST(Features, HeatAddsItsColumns) {
               {{"temperature", "local_temperature", "temperature_rate"}, {"forces"}, {"forces and heat"}});
 }
 
+TEST(Features, BodiesThatConductDifferentlyAddTheirConductivity) {
+  expect_adds(
+      [](Scene& s) {
+        s.fluid.heat = Heat{};
+        s.fluid.bodies.emplace_back().diffusivity = 1;
+      },
+      {{"temperature", "local_temperature", "temperature_rate", "conductivity"}, {"forces"}, {"forces and heat"}});
+  expect_adds([](Scene& s) { s.fluid.bodies.emplace_back().diffusivity = 1; }, {});  // no heat
+}
+
 TEST(Features, VaryingViscosityAddsItsPass) {
   expect_adds([](Scene& s) { s.fluid.rheology.model = Rheology::Model::smd; },
               {{"viscosity", "stress"}, {}, {"viscosity"}});
@@ -119,6 +129,17 @@ TEST(Features, VaryingViscosityAddsItsPass) {
 TEST(Features, ConstantViscosityAddsNoColumn) {
   expect_adds([](Scene& s) { s.fluid.rheology.viscosity = 1; }, {});
   expect_adds([](Scene& s) { s.numerics.artificial_viscosity = 0.1; }, {});
+}
+
+TEST(Features, ConsistentLaplaciansAddTheirWeights) {
+  const auto consistent = [](Scene& s) {
+    s.numerics.gradient_correction = true;
+    s.numerics.laplacian = LaplacianForm::consistent;
+  };
+  const Names weights = {"correction", "laplacian_tilt", "laplacian_bend"};
+  const auto flow = [&](Scene& s) { consistent(s), s.fluid.rheology.viscosity = 1; };
+  expect_adds(flow, {weights, {}, {"corrections"}});
+  expect_adds(consistent, {{"correction"}, {}, {"corrections"}});  // nothing to act on
 }
 
 TEST(Features, XsphAddsItsColumn) {
@@ -288,6 +309,28 @@ TEST(Features, RefusesAPairwiseStressWithoutWhatItNeeds) {
   EXPECT_TRUE(features_of(replica).pairwise_stress);
   replica.numerics.tensile_correction = true;
   EXPECT_FALSE(features_of(replica).pairwise_stress);
+}
+
+TEST(Features, RefusesConsistentLaplaciansWithWhatTheyDoNotGoWith) {
+  const auto with = [](auto&& edit) {
+    return [edit](Scene& s) {
+      s.fluid.rheology.viscosity = 1;
+      s.numerics.laplacian = LaplacianForm::consistent;
+      s.numerics.gradient_correction = true;
+      edit(s);
+    };
+  };
+  EXPECT_EQ(refusal(with([](Scene&) {})), "");
+  expect_refused(with([](Scene& s) { s.numerics.gradient_correction = false; }),
+                 "numerics.laplacian: \"consistent\" needs corrected gradients; add gradient_cor");
+  expect_refused(with([](Scene& s) { s.numerics.viscosity_form = ViscosityForm::monaghan; }),
+                 "numerics.laplacian: \"consistent\" is one with viscosity_form \"morris\"");
+  expect_refused(with([](Scene& s) { s.fluid.bodies.emplace_back().diffusivity = 1; }),
+                 "numerics.laplacian: \"consistent\" takes one diffusivity for all");
+  expect_refused(with([](Scene& s) { s.boundaries.emplace_back(), s.numerics.wall_support = true; }),
+                 "numerics.laplacian: \"consistent\" knows nothing of the support of walls");
+  expect_refused(with([](Scene& s) { s.numerics.tensile_correction = true; }),
+                 "numerics.laplacian: does not go together with the methods kept for replication");
 }
 
 TEST(Features, RefusesLevelsWithWhatTheyDoNotGoWith) {

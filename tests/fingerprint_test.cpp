@@ -141,6 +141,7 @@ const std::vector<Change> changes = {
     {"numerics.viscosity_form=\"muller\""},
     {"numerics.viscosity_form=\"monaghan\""},
     {"numerics.stress_form=\"pairwise\""},
+    {"numerics.laplacian=\"consistent\"", {"numerics.gradient_correction=true"}},
     {"numerics.tensile_correction=true"},
     {"numerics.internal_energy=true"},
     {"numerics.half_pressure=true"},

@@ -31,6 +31,9 @@ TEST(SceneFile, ReadsEverything) {
   EXPECT_EQ(scene.fluid.bodies[0].velocity[2], -1);
   EXPECT_EQ(scene.fluid.bodies[0].temperature, 80);
   EXPECT_FALSE(scene.fluid.bodies[1].temperature);
+  EXPECT_FALSE(scene.fluid.bodies[0].diffusivity);
+  const Scene own = parse_scene(replaced(good, "temperature = 80", "diffusivity = 2e-4"), "s.toml");
+  EXPECT_EQ(own.fluid.bodies[0].diffusivity, 2e-4);
   EXPECT_EQ(scene.fluid.rheology.model, Rheology::Model::smd);
   EXPECT_EQ(scene.fluid.rheology.jump_number, (std::array<double, 2>{15, 150}));
   EXPECT_EQ(scene.fluid.rheology.yield_stress, 60);
@@ -109,6 +112,8 @@ TEST(SceneFile, CorrectedGradientsAndShifting) {
   EXPECT_FALSE(numerics("").gradient_correction);
   EXPECT_FALSE(numerics("gradient_correction = true").shifting);
   EXPECT_EQ(numerics("gradient_correction = true").stress_form, StressForm::summed);
+  EXPECT_EQ(numerics("gradient_correction = true").laplacian, LaplacianForm::conservative);
+  EXPECT_EQ(numerics("laplacian = \"consistent\"\ngradient_correction = true").laplacian, LaplacianForm::consistent);
   EXPECT_EQ(numerics("stress_form = \"pairwise\"\ngradient_correction = true").stress_form, StressForm::pairwise);
   EXPECT_EQ(numerics("gradient_correction = true\nshifting = true").shifting->strength, Shifting{}.strength);
   EXPECT_EQ(numerics("gradient_correction = true\nshifting = { strength = 3 }").shifting->strength, 3);

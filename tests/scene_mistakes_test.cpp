@@ -81,6 +81,7 @@ const std::vector<Mistake> mistakes = {
     {"jump_number = [15, 150]", "jump_number = [-2, 150]", "-2 is out of range"},
     {"yield_stress = 60.0", "yield_stress = 0", "yield_stress: 0 is out of range"},
     {"diffusivity = 1e-4", "diffusivity = -1e-4", "fluid.heat.diffusivity"},
+    {"temperature = 80", "temperature = 80\ndiffusivity = 0", "fluid.body.0.diffusivity: 0 is out of range"},
     {"courant = { sound = 0.15 }", "courant = { sound = 0 }", "numerics.courant.sound: 0"},
     {"xsph = { epsilon = 0.4 }", "xsph = { epsilon = 2 }", "numerics.xsph.epsilon: 2"},
     {"courant = { sound = 0.15 }", "time_step_levels = 17", "numerics.time_step_levels: 17"},

@@ -112,6 +112,12 @@ TYPED_TEST(ThreadsOf, ShiftedFlowOf30Steps) {
   expect_same_bits<TypeParam::dim, typename TypeParam::Real>(shifted_flow(TypeParam::dim), 30);
 }
 
+TYPED_TEST(ThreadsOf, ConsistentLaplaciansOf20Steps) {
+  Scene scene = shifted_flow(TypeParam::dim);
+  scene.numerics.laplacian = LaplacianForm::consistent;
+  expect_same_bits<TypeParam::dim, typename TypeParam::Real>(scene, 20);
+}
+
 TYPED_TEST(ThreadsOf, RungeKuttaOf10Steps) {
   Scene scene = melting_block(TypeParam::dim);
   scene.numerics.integrator = IntegratorKind::runge_kutta_4;

@@ -1,20 +1,19 @@
 // Conduction in a fluid at rest: a Gaussian hot spot, T = (s²/(s² + 4kt))^{d/2} e^{−r²/(s² + 4kt)}, and two slabs in
-// contact, T = (b_l T_l + b_r T_r)/(b_l + b_r) where they meet, b = √(κρc).
+// contact (slab_theory.h).
 #include <cmath>
 
 #include "bench/study/list.h"
 #include "bench/study/metrics.h"
 #include "bench/study/particles.h"
 #include "bench/study/scene_text.h"
+#include "bench/study/slab_theory.h"
 
 namespace molten::study {
 
 namespace {
 
-/// Heat of diffusivity 1; sound so slow that conduction alone bounds the step.
-std::string heated_text(int dimensions, double spacing) {
-  return fluid_text(dimensions, spacing, 1, "[fluid.heat]\ndiffusivity = 1\ninitial = 0\n") + sound_speed_text(0.1);
-}
+constexpr std::string_view heat_text = "[fluid.heat]\ndiffusivity = 1\ninitial = 0\n";
+constexpr double slow_sound = 0.1;  // m/s: conduction alone bounds the step
 
 // ---- hot spot -------------------------------------------------------------------------------------------------------
 
@@ -33,7 +32,7 @@ void run_hot_spot(const Request& r, Report& report) {
   const double spacing = 1.0 / static_cast<double>(r.size);
   Setup s;
   s.scene = scene_head(dimensions, {}, periodic_text(dimensions, {}, {1, 1, 1}, dimensions == 3 ? "xyz" : "xy")) +
-            heated_text(dimensions, spacing);
+            fluid_text(dimensions, spacing, 1, std::string(heat_text)) + sound_speed_text(slow_sound);
   s.start = lattice(dimensions, {}, {1, 1, 1}, spacing);
   perturb(s.start, dimensions, r["perturbation"]);
   for (const Triple& x : s.start.position) s.start.temperature.push_back(spot(x, dimensions, 0));
@@ -48,22 +47,35 @@ void run_hot_spot(const Request& r, Report& report) {
 
 // ---- two slabs ------------------------------------------------------------------------------------------------------
 
-double slabs(double x, double time) { return std::erf(x / std::sqrt(4 * time)); }
+/// Both slabs as bodies of their own, stand-ins as the particles are given; diffusivity 1 on the left.
+std::string slabs_text(double spacing, double ratio) {
+  const auto body = [](double left, double k) {
+    return fmt::format("[[fluid.body]]\nbox = {}\n", box_text(2, {left, 0, 0}, {left + 1, 1, 0})) +
+           (k == 1 ? "" : fmt::format("diffusivity = {:.17g}\n", k));
+  };
+  return fmt::format("[fluid]\nspacing = {:.17g}\ndensity = 1\n{}{}{}[run]\nend_time = 1\n", spacing, heat_text,
+                     body(-1, 1), body(0, ratio)) +
+         sound_speed_text(slow_sound);
+}
 
 /// A bar from −1 to 1, cold on the left and hot on the right, periodic across.
 void run_two_slabs(const Request& r, Report& report) {
   report.expect("temperature_l2", 0.005);
-  const double spacing = 1.0 / static_cast<double>(r.size), width = 8 * spacing;
+  const double spacing = 1.0 / static_cast<double>(r.size), width = 8 * spacing, ratio = r["conductivity_ratio"];
   Setup s;
-  s.scene = scene_head(2, {}, periodic_text(2, {-2, 0, 0}, {2, width, 0}, "y")) + heated_text(2, spacing);
+  s.scene = scene_head(2, {}, periodic_text(2, {-2, 0, 0}, {2, width, 0}, "y")) + slabs_text(spacing, ratio);
   s.start = lattice(2, {-1, 0, 0}, {1, width, 0}, spacing);
-  for (const Triple& x : s.start.position) s.start.temperature.push_back(x[0] < 0 ? -1 : 1);
+  for (const Triple& x : s.start.position) {
+    s.start.temperature.push_back(x[0] < 0 ? -1 : 1);
+    s.start.conductivity.push_back(x[0] < 0 ? 1 : ratio);
+  }
   const auto simulation = Simulation::make(r, s, report);
-  simulation->run_until(0.02);  // the ends do not feel it yet: erf(3.5) = 1 − 6e-7
+  simulation->run_until(r["end_time"]);
 
   const Cloud c = simulation->cloud();
+  const TwoSlabs exact(1, ratio, c.time);
   FieldError error;
-  for (std::size_t k = 0; k < c.count(); ++k) error.add(c.temperature[k], slabs(c.position[k][0], c.time));
+  for (std::size_t k = 0; k < c.count(); ++k) error.add(c.temperature[k], exact.temperature(c.position[k][0], c.time));
   report.judge("temperature_l2", error.l2());
 }
 
@@ -85,7 +97,8 @@ Case two_slabs() {
           "particles a slab's thickness",
           50,
           10,
-          {},
+          {{"conductivity_ratio", 1, "of the hot slab over the cold one"},
+           {"end_time", 0.02, "thickness²/k of the cold slab"}},
           run_two_slabs};
 }
 

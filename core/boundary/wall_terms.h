@@ -289,7 +289,9 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     if (skin.layer_diffusivity <= 0) return there;
     // The flux through the layer is that through the fluid: k (T_i − T)/reach = k_l (T − T_behind)/thickness.
     const L layer(static_cast<Real>(skin.layer_diffusivity / skin.layer_thickness));
-    const L own = L(static_cast<Real>(parameters_.diffusivity)) / n.reach;
+    L own = L(static_cast<Real>(parameters_.diffusivity)) / n.reach;
+    if constexpr (is_among<Conductivity, Reads>)
+      if (particles_.has(conductivity)) own = own * i[conductivity];
     return (own * i[local_temperature] + layer * there) / (own + layer);
   }
 

@@ -41,6 +41,7 @@ template <int Dim> struct GradientCorrection {
   double corrected = 0;            // how much of it: 1, at a free surface 0
   double laplacian = 1;            // d / tr M; towards a free surface, whose missing half is no lattice's flaw, 1
   double inner = 0;                // 1: deep in the fluid; 0: at its surface
+  double least = 0;                // eigenvalue of M
 
   explicit GradientCorrection(const SymTensor<Dim, double>& moment) {
     Eigen::Matrix<double, Dim, Dim> m;
@@ -48,7 +49,7 @@ template <int Dim> struct GradientCorrection {
       for (int b = 0; b < Dim; ++b) m(a, b) = moment(a, b);
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Dim, Dim>> solver;
     solver.computeDirect(m);
-    const double least = solver.eigenvalues()[0];
+    least = solver.eigenvalues()[0];
     // Row by row below a plane surface the least eigenvalue is 0.5, 0.7 to 0.92, 0.94 or more (Wendland, h = 2 to 1.3
     // spacings), at an edge about 0.3.
     inner = std::clamp((least - 0.75) / 0.2, 0.0, 1.0);

@@ -1,8 +1,11 @@
 // Heat conduction dT/dt = k ∇²T (Cleary & Monaghan; [P] 6-2): dT_i/dt = k Σ 4 m_j/(ρ_i + ρ_j) (T_i − T_j) W'/r, the
 // form that conserves heat to round-off. [P] 6-9 lacks a factor 2: it gives half of ∇²T.
+// Where conductivities differ, k is the harmonic mean of both particles' (Cleary & Monaghan 1999): the flux through a
+// contact is then that of both sides. Density times heat capacity is the same everywhere.
 // Corrected: times the mean of the particles' factors (gradient_correction.h), which conserves heat as well.
 #pragma once
 
+#include <limits>
 #include <type_traits>
 
 #include "core/fields.h"
@@ -11,22 +14,34 @@
 
 namespace molten {
 
-template <class Real, bool corrected = false> struct HeatConduction {
-  using Reads = std::conditional_t<corrected, FieldList<LocalTemperature, Compression, LaplacianCorrection>,
-                                   FieldList<LocalTemperature, Compression>>;
+/// `may_vary`: in a pass that also serves scenes whose conductivities differ.
+template <class Real, bool corrected = false, bool may_vary = false> struct HeatConduction {
+  using Reads = typename UnionOf<FieldList<LocalTemperature, Compression>,
+                                 std::conditional_t<corrected, FieldList<LaplacianCorrection>, FieldList<>>,
+                                 std::conditional_t<may_vary, FieldList<Conductivity>, FieldList<>>>::type;
   using Sums = FieldList<TemperatureRate>;
   bool on = false;
   Real strength = 0;  // 4 k/ρ0, m⁵/(kg s)
 
-  HeatConduction(double diffusivity, double rest_density)
-      : on(diffusivity > 0), strength(Real(4 * diffusivity / rest_density)) {}
+  bool varied = false;
+
+  HeatConduction(double diffusivity, double rest_density, bool varied_ = false)
+      : on(diffusivity > 0), strength(Real(4 * diffusivity / rest_density)), varied(varied_) {}
 
   template <class Pair, class I, class J, class Out>
   [[gnu::always_inline]] void operator()(const Pair&, const I& i, const J& j, Out& out) const {
     using L = std::decay_t<decltype(i[compression])>;
     L factor = L(strength) * reciprocal(L(2) + i[compression] + j[compression]);
     if constexpr (corrected) factor = factor * laplacian_correction_of(i, j);
+    if constexpr (may_vary)
+      if (varied) factor = factor * harmonic_mean(i[conductivity], j[conductivity]);
     out.gradW(temperature_rate, factor * (i[local_temperature] - j[local_temperature]));
+  }
+
+ private:
+  template <class L> [[gnu::always_inline]] static L harmonic_mean(const L& a, const L& b) {
+    const L tiny(std::numeric_limits<Real>::min() * Real(1e8));  // padding has none
+    return L(2) * a * b * reciprocal(a + b + tiny);
   }
 };
 

@@ -197,6 +197,8 @@ Start fill_bodies(const Scene& scene, const Features& features) {
     const double u = highest > lowest ? (x[up] - lowest) / (highest - lowest) : 0;
     start.temperature.push_back(
         body.temperature.value_or((1 - u) * fluid.heat->initial_bottom + u * fluid.heat->initial_top));
+    if (features.varied_conduction)
+      start.conductivity.push_back(body.diffusivity.value_or(fluid.heat->diffusivity) / fluid.heat->diffusivity);
   }
   describe_vents(scene, start);
   return start;

@@ -103,13 +103,14 @@ void add_one(Hash& hash, const Numerics& n) {
   const auto& [preset, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
                artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, stress_form,
                internal_energy, xsph, stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter,
-               gradient_correction, shifting, courant_sound, courant_viscous, courant_force, courant_conduction,
-               density_diffusion, wall_support, boundary_particles, fixed_dt, time_step_levels, sleep] = n;
+               gradient_correction, laplacian, shifting, courant_sound, courant_viscous, courant_force,
+               courant_conduction, density_diffusion, wall_support, boundary_particles, fixed_dt, time_step_levels,
+               sleep] = n;
   add(hash, precision, resort, kernel, smoothing_ratio, skin, integrator, state_equation, gamma, sound_speed,
       artificial_viscosity, particle_sound_speed, tensile_correction, viscosity_form, stress_form, internal_energy,
       xsph, stiffness, density_kernel, half_pressure, energy_surplus, density, density_filter, gradient_correction,
-      shifting, courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion, wall_support,
-      boundary_particles, fixed_dt, time_step_levels, sleep);
+      laplacian, shifting, courant_sound, courant_viscous, courant_force, courant_conduction, density_diffusion,
+      wall_support, boundary_particles, fixed_dt, time_step_levels, sleep);
 }
 
 void add_one(Hash& hash, const Box& b) {
@@ -124,8 +125,8 @@ void add_one(Hash& hash, const Scene& s) {
 }
 
 void add_one(Hash& hash, const Start& s) {
-  const auto& [spacing, measure, position, velocity, temperature, vents, vent_speed] = s;
-  add(hash, spacing, measure, position, velocity, temperature, vents, vent_speed);
+  const auto& [spacing, measure, position, velocity, temperature, conductivity, vents, vent_speed] = s;
+  add(hash, spacing, measure, position, velocity, temperature, conductivity, vents, vent_speed);
 }
 
 template <class T>

@@ -21,6 +21,8 @@ const TomlReader::Keys rheology_keys = {"model",
                                         "vft"};
 const TomlReader::Keys heat_keys = {"diffusivity", "melting_range", "initial"};
 
+const Range diffusivities{0, 1e6, false, "m²/s"};
+
 void read_velocity(const TomlReader& keys, int dimensions, Body& body) {
   keys.vector("velocity", body.velocity, dimensions, Range::any("m/s"));
 }
@@ -40,12 +42,14 @@ std::vector<Body> read_bodies(const TomlReader& fluid, int dimensions, bool has_
   }
   if (has_shape(fluid)) fluid.fail("body", "stands beside a shape of [fluid]; move that shape into a [[fluid.body]]");
   if (fluid.has("velocity")) fluid.fail("velocity", "stands beside bodies; give each [[fluid.body]] its own");
-  for (const TomlReader& table : fluid.tables("body", with_shape_keys({"velocity", "temperature"}))) {
+  for (const TomlReader& table : fluid.tables("body", with_shape_keys({"velocity", "temperature", "diffusivity"}))) {
     Body& body = bodies.emplace_back();
     body.shape = read_shape(table, dimensions, ShapeUse::fluid);
     read_velocity(table, dimensions, body);
     table.number("temperature", body.temperature, Range::any("the scene's temperature unit"));
-    if (body.temperature && !fluid.has("heat")) table.fail("temperature", "needs heat; add [fluid.heat]");
+    table.number("diffusivity", body.diffusivity, diffusivities);
+    for (const std::string_view key : {"temperature", "diffusivity"})
+      if (table.has(key) && !fluid.has("heat")) table.fail(key, "needs heat; add [fluid.heat]");
   }
   if (bodies.empty()) fluid.fail("body", "is empty; add a [[fluid.body]] with a shape");
   return bodies;
@@ -198,7 +202,7 @@ std::optional<Heat> read_heat(const TomlReader& fluid, bool all_bodies_have_one)
   if (!keys) return std::nullopt;
   Heat heat;
   keys->require("diffusivity", "give the thermal diffusivity in m²/s");
-  keys->number("diffusivity", heat.diffusivity, Range{0, 1e6, false, "m²/s"});
+  keys->number("diffusivity", heat.diffusivity, diffusivities);
   std::array<double, 2> melting{};
   if (keys->numbers("melting_range", melting, Range::any("the scene's temperature unit"))) {
     if (melting[0] >= melting[1]) keys->fail("melting_range", "does not rise; give [T low, T high]");

@@ -23,6 +23,7 @@ const TomlReader::Keys numerics_keys = {"preset",
                                         "fixed_dt",
                                         "time_step_levels",
                                         "gradient_correction",
+                                        "laplacian",
                                         "shifting",
                                         "density",
                                         "density_filter",
@@ -217,6 +218,9 @@ Numerics read_numerics(const TomlReader& root, const Scene& scene) {
   read_seldom(*keys, numerics);
   read_xsph(*keys, numerics);
   keys->flag("gradient_correction", numerics.gradient_correction);
+  keys->choice<LaplacianForm>(
+      "laplacian", numerics.laplacian,
+      {{"conservative", LaplacianForm::conservative}, {"consistent", LaplacianForm::consistent}});
   read_shifting(*keys, numerics);
   read_courant(*keys, numerics);
   keys->flag("wall_support", numerics.wall_support);

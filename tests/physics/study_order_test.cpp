@@ -41,6 +41,22 @@ TEST(StudyOrder, ConductionIsOfSecondOrderWithCorrection) {
   }
 }
 
+TEST(StudyOrder, SlabsOfAThousandTimesTheConductivityConvergeFasterThanInFirstOrder) {
+  const Pair p = errors_of("two-slabs", 10, "molten", {"conductivity_ratio=1000"});
+  EXPECT_GT(p.order(), 1);
+  EXPECT_LT(p.fine, 0.005);
+}
+
+TEST(StudyOrder, HotSpotInDisorderIsOfSecondOrderWithConsistentLaplacians) {
+  const std::vector<std::string> disorder = {"numerics.gradient_correction=true", "perturbation=0.2"};
+  std::vector<std::string> consistent = disorder;
+  consistent.push_back("numerics.laplacian=\"consistent\"");
+  const Pair p = errors_of("hot-spot", 25, "molten", consistent);
+  EXPECT_GT(p.order(), 1.8);
+  EXPECT_LT(p.fine, 0.005);
+  EXPECT_GT(error_of("hot-spot", 50, "molten", disorder), 2 * p.fine);
+}
+
 TEST(StudyOrder, PoiseuilleConvergesFasterThanInFirstOrder) {
   EXPECT_GT(errors_of("poiseuille", 12, "internal", {"walls=0"}).order(), 1.5);
 }
