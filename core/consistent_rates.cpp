@@ -13,10 +13,10 @@ namespace molten {
 namespace {
 
 template <int Dim, class Real> auto weights_finish(State<Dim, Real>& s) {
-  return PlainFinish{[per_density = 1 / s.parameters.eos.rest_density, h = s.parameters.smoothing_length,
+  return PlainFinish{[per_density = 1 / s.parameters.eos.rest_density, reach = s.parameters.support_radius,
                       tilt = s.particles[laplacian_tilt],
                       bend = s.particles[laplacian_bend]](std::size_t slot, const auto& sums) {
-    const LaplacianWeights<Dim> found(sums, per_density, h);
+    const LaplacianWeights<Dim> found(sums, per_density, reach);
     for (int d = 0; d < Dim; ++d) tilt[d][slot] = static_cast<Real>(found.tilt[d]);
     for (int k = 0; k < found.bend.size; ++k) bend[k][slot] = static_cast<Real>(found.bend[k]);
   }};

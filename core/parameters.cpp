@@ -243,6 +243,8 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
       p.smd.melting_high = (*scene.fluid.heat->melting_range)[1];
     }
     p.reference_temperature = Temperatures(scene, start).middle();
+    // What vents let in has the scene's.
+    if (!start.conductivity.empty() && scene.vents.empty()) p.largest_conductivity = 0;
     for (const double ratio : start.conductivity) p.largest_conductivity = std::max(p.largest_conductivity, ratio);
   }
   p.artificial_viscosity = n.artificial_viscosity;

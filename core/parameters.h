@@ -34,7 +34,7 @@ template <int Dim> struct Parameters {
                                                   : viscosity_of(rheology, strain, temperature);
   }
   double diffusivity = 0, reference_temperature = 0;  // m²/s; T that local temperatures refer to
-  double largest_conductivity = 1;                    // of a particle over the scene's
+  double largest_conductivity = 1;                    // that there is, over the scene's
   double artificial_viscosity = 0;                    // α
   double density_diffusion = 0;                       // δ
   double xsph = 0;                                    // ε

@@ -29,6 +29,7 @@ CHANGES = [["numerics." + key for key in keys.split()] for keys in [
     "smoothing_ratio=1.7", "smoothing_ratio=2", "precision=double",
     "integrator=symplectic_euler", "integrator=predictor_corrector", "integrator=runge_kutta_4",
     "artificial_viscosity=0", "artificial_viscosity=0.02", "gradient_correction=true", "gradient_correction=false",
+    "gradient_correction=true laplacian=consistent",
     "density_diffusion=0.1", "density_diffusion=0.1 wall_support=true", "density_diffusion=0.2 wall_support=true",
     'density_filter={kind="shepard"}', 'density_filter={kind="mls"}', "tensile_correction=true"]]
 COMMIT = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True,

@@ -75,6 +75,7 @@ const std::vector<Mistake> mistakes = {
     {"frames_per_second = 50", "frames_per_second = 1e30",
      "output.frames_per_second: makes more than ten million frames"},
     {"radius = 0.5", "radius = 0", "fluid.body.0.sphere.radius: 0 is out of range"},
+    {"density = 1200.0", "density = 1e31", "1e+31 is out of range; give a number above 0 in kg/m³, at most 1e+30"},
     {"n = 0.5", "n = 0", "fluid.rheology.n: 0 is out of range"},
     {"n = 0.5", "n = 2.1", "give a number above 0 and at most 2"},
     {"jump_number = [15, 150]", "jump_number = -1", "jump_number: -1 is out of range; give a number above -1"},

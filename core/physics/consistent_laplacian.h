@@ -74,13 +74,16 @@ template <int Dim> class LaplacianWeights {
   static constexpr int squares = SymTensor<Dim, double>::size, unknowns = Dim + squares;
   using Matrix = Eigen::Matrix<double, unknowns, unknowns>;
   using Column = Eigen::Matrix<double, unknowns, 1>;
+  /// How far weights may be from 1: displaced by 0.3 spacings particles need up to 5. More is asked where neighbours do
+  /// not tell quadratic fields apart, as those of some short-ranged kernels on a lattice: there the plain form is left.
+  static constexpr double furthest = 6;
 
  public:
   Vec<Dim, double> tilt = Vec<Dim, double>::filled(0);              // a, 1/m
   SymTensor<Dim, double> bend = SymTensor<Dim, double>::filled(0);  // B, 1/m²
 
-  /// `h`: smoothing length (m), the unit of length of the equations.
-  template <class Sums> LaplacianWeights(const Sums& sums, double per_density, double h) {
+  /// `reach`: support radius (m), the unit of length of the equations.
+  template <class Sums> LaplacianWeights(const Sums& sums, double per_density, double reach) {
     SymTensor<Dim, double> second;
     for (int k = 0; k < squares; ++k) second[k] = -per_density * sums[moment][k];
     // A surface's own particles have a least eigenvalue of 0.5, inner ones displaced by 0.2 spacings 0.7 or more.
@@ -89,21 +92,21 @@ template <int Dim> class LaplacianWeights {
     Matrix m;
     Column missing;
     for (int a = 0; a < Dim; ++a) {
-      missing[a] = per_density * h * sums[first_moment][a];
+      missing[a] = per_density * reach * sums[first_moment][a];
       for (int b = 0; b < Dim; ++b) m(a, b) = second(a, b);
       for (int k = 0; k < squares; ++k)
-        m(a, Dim + k) = m(Dim + k, a) = -per_density / h * sums[third_moment][thirds[a][k]];
+        m(a, Dim + k) = m(Dim + k, a) = -per_density / reach * sums[third_moment][thirds[a][k]];
     }
     for (int k = 0; k < squares; ++k) {
       missing[Dim + k] = (k < Dim) - second[k];
       for (int l = 0; l < squares; ++l)
-        m(Dim + k, Dim + l) = -per_density / (h * h) * sums[fourth_moment][fourths[k][l]];
+        m(Dim + k, Dim + l) = -per_density / (reach * reach) * sums[fourth_moment][fourths[k][l]];
     }
     const Column found = share * m.ldlt().solve(missing);
-    if (!found.allFinite()) return;
-    for (int a = 0; a < Dim; ++a) tilt[a] = found[a] / h;
+    if (!(found.template head<Dim>().norm() + found.template tail<squares>().norm() < furthest)) return;
+    for (int a = 0; a < Dim; ++a) tilt[a] = found[a] / reach;
     // x·B x counts what is off the diagonal twice.
-    for (int k = 0; k < squares; ++k) bend[k] = found[Dim + k] / (h * h) * (k < Dim ? 1 : 0.5);
+    for (int k = 0; k < squares; ++k) bend[k] = found[Dim + k] / (reach * reach) * (k < Dim ? 1 : 0.5);
   }
 
  private:

@@ -29,7 +29,7 @@ const char* type_name(const toml::node& node) {
 }
 
 std::string condition(const Range& range) {
-  const bool bounded_low = range.low > -1e30, bounded_high = range.high < 1e30;
+  const bool bounded_low = range.low > -Range::largest, bounded_high = range.high < Range::largest;
   const char* low_word = range.low_included ? "at least" : "above";
   if (bounded_low && bounded_high) return fmt::format(" {} {} and at most {}", low_word, range.low, range.high);
   if (bounded_low) return fmt::format(" {} {}", low_word, range.low);
@@ -119,7 +119,9 @@ double TomlReader::checked_number(std::string_view key, const toml::node& node, 
   const double value = *node.value<double>();
   const bool above = range.low_included ? value >= range.low : value > range.low;
   if (!std::isfinite(value) || !above || value > range.high) {
-    fail(key, fmt::format("{} is out of range; give {}", value, wanted(range)));
+    const bool too_large = range.high == Range::largest && std::abs(value) > Range::largest;
+    fail(key, fmt::format("{} is out of range; give {}{}", value, wanted(range),
+                          too_large ? fmt::format(", at most {}", Range::largest) : ""));
   }
   return value;
 }

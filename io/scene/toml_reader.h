@@ -15,13 +15,14 @@ namespace molten {
 
 /// The numbers that a key allows, and their unit for messages.
 struct Range {
-  double low = -1e30, high = 1e30;  // beyond, squares overflow single precision
+  static constexpr double largest = 1e30;  // beyond, squares overflow single precision
+  double low = -largest, high = largest;
   bool low_included = true;
   const char* unit = "";
 
-  static Range any(const char* unit) { return {-1e30, 1e30, true, unit}; }
-  static Range positive(const char* unit) { return {0, 1e30, false, unit}; }
-  static Range not_negative(const char* unit) { return {0, 1e30, true, unit}; }
+  static Range any(const char* unit) { return {-largest, largest, true, unit}; }
+  static Range positive(const char* unit) { return {0, largest, false, unit}; }
+  static Range not_negative(const char* unit) { return {0, largest, true, unit}; }
   static Range fraction() { return {0, 1, true, ""}; }
 };
 
