@@ -241,6 +241,9 @@ TEST_F(Commands, CompareTellsRunsApart) {
   const Outcome same = molten_program({"compare", out.string(), out.string()});
   EXPECT_EQ(same.code, 0);
   EXPECT_TRUE(contains(same.out, "position       largest 0,")) << same.out;
+  EXPECT_FALSE(contains(same.out, "different times")) << same.out;
+  const std::string first = (out / "frames/000000.hdf").string(), second = (out / "frames/000001.hdf").string();
+  EXPECT_TRUE(contains(molten_program({"compare", first, second}).out, "different times"));
   const Outcome differ = molten_program({"compare", out.string(), other});
   EXPECT_EQ(differ.code, 0);
   EXPECT_FALSE(contains(differ.out, "velocity       largest 0,")) << differ.out;

@@ -122,6 +122,8 @@ ExitCode compare(const fs::path& a, const fs::path& b) {
   const std::size_t common = std::min(frames(a), frames(b));
   const Snapshot first = last_frame(a, common), second = last_frame(b, common);
   fmt::print("{} (t = {:.6g} s) and {} (t = {:.6g} s)\n", a.string(), first.time, b.string(), second.time);
+  if (std::abs(first.time - second.time) > 1e-6 * std::max(first.time, second.time))
+    fmt::print("  note: at different times; name two frames of the same\n");
   if (first.id != second.id) {
     fmt::print("  different particles: {} and {}\n", first.count(), second.count());
     return ExitCode::done;
