@@ -255,7 +255,7 @@ FieldSet Features::columns() const {
   if (stages() > 2) s |= field_set(FieldList<PositionSlope, VelocitySlope, CompressionSlope>{});
   if (stages() > 2 && heat) s |= field_set(FieldList<TemperatureSlope>{});
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
-  if (varied_conduction) s |= field_set(FieldList<Conductivity>{});
+  if (varied_conduction) s |= field_set(FieldList<Conductivity, InterfaceDistance, InterfaceResistance>{});
   if (stress) s |= field_set(FieldList<Viscosity>{});
   if (stress && !pairwise_stress) s |= field_set(FieldList<Stress>{});
   if (pairwise_stress) s |= field_set(FieldList<StrainRate, Vorticity, Thinning, Inner>{});
@@ -284,6 +284,7 @@ std::vector<std::string> Features::passes() const {
   if (density_sum) p.push_back("density");
   if (gradient_correction) p.push_back("corrections");
   if (sleep) p.push_back("wake and rest");
+  if (varied_conduction) p.push_back("interfaces");
   if (stress) p.push_back("viscosity");
   p.push_back(heat ? "forces and heat" : "forces");
   if (levels) p.push_back("stages");

@@ -50,6 +50,10 @@ MOLTEN_FIELD(Temperature, ExactScalar, temperature, "degrees", "temperature");
 
 MOLTEN_FIELD(Conductivity, ScalarField, conductivity, "1", "thermal conductivity over that of the scene");
 
+MOLTEN_FIELD(InterfaceDistance, ScalarField, interface_distance, "1",
+             "distance from what conducts differently, over the kernel's reach");
+MOLTEN_FIELD(InterfaceResistance, ScalarField, interface_resistance, "1", "that distance over the conductivity");
+
 MOLTEN_FIELD(Inlet, IdScalar, inlet, "1", "number of the vent that still pushes the particle; -1: none");
 
 MOLTEN_FIELD(Held, ScalarField, held, "1",
@@ -132,7 +136,7 @@ using AllFields =
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
               RestTime, HeatRestTime, RestTemperature, Inlet, Held, StrainRate, Vorticity, Thinning, Inner,
               CouplingRate, StiffAcceleration, StartVelocity, StageChange, EarlierChange, LaplacianTilt, LaplacianBend,
-              Conductivity>;
+              Conductivity, InterfaceDistance, InterfaceResistance>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

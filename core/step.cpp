@@ -85,6 +85,7 @@ template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s) {
   if (s.features.density_sum) sum_density(s);
   if (s.features.gradient_correction) find_corrections(s);
   if (s.features.consistent_laplacian) find_laplacian_weights(s);
+  if (s.features.varied_conduction) find_interfaces(s);
   const bool twice_at_walls = s.features.stress && s.features.wall_support;
   if (twice_at_walls) find_wall_patches(s);
   if (s.features.stress) find_viscosity(s);

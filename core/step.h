@@ -34,6 +34,9 @@ template <int Dim, class Real> void find_corrections(State<Dim, Real>& s);
 /// What makes the weights of Laplacians exact for quadratic fields. Only where the scene asks for it.
 template <int Dim, class Real> void find_laplacian_weights(State<Dim, Real>& s);
 
+/// How far particles are from those that conduct differently. Only where bodies do.
+template <int Dim, class Real> void find_interfaces(State<Dim, Real>& s);
+
 /// Lets a vent's next layer of particles in when there is room for it; puts the first ones in at the start of a run.
 template <int Dim, class Real> void emit(State<Dim, Real>& s);
 template <int Dim, class Real> void open_vents(State<Dim, Real>& s);

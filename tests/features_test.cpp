@@ -107,7 +107,10 @@ TEST(Features, BodiesThatConductDifferentlyAddTheirConductivity) {
         s.fluid.heat = Heat{};
         s.fluid.bodies.emplace_back().diffusivity = 1;
       },
-      {{"temperature", "local_temperature", "temperature_rate", "conductivity"}, {"forces"}, {"forces and heat"}});
+      {{"temperature", "local_temperature", "temperature_rate", "conductivity", "interface_distance",
+        "interface_resistance"},
+       {"forces"},
+       {"interfaces", "forces and heat"}});
   expect_adds([](Scene& s) { s.fluid.bodies.emplace_back().diffusivity = 1; }, {});  // no heat
 }
 

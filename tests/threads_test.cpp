@@ -76,6 +76,8 @@ template <int Dim, class Real> State<Dim, Real> start_run(const Scene& scene) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> warm(20, 90), fast(-1, 1);
   for (double& T : start.temperature) T = warm(random);
+  if (features_of(scene).varied_conduction)
+    for (const auto& x : start.position) start.conductivity.push_back(x[0] < 0.3 ? 1 : 100);
   for (auto& v : start.velocity)  // so that 50 steps see sorts and bounces
     for (int d = 0; d < Dim; ++d) v[d] = fast(random);
   return state_of<Dim, Real>(scene, start, tank<Dim>(Dim == 2 ? 1.6 : 0.52));
@@ -115,6 +117,12 @@ TYPED_TEST(ThreadsOf, ShiftedFlowOf30Steps) {
 TYPED_TEST(ThreadsOf, ConsistentLaplaciansOf20Steps) {
   Scene scene = shifted_flow(TypeParam::dim);
   scene.numerics.laplacian = LaplacianForm::consistent;
+  expect_same_bits<TypeParam::dim, typename TypeParam::Real>(scene, 20);
+}
+
+TYPED_TEST(ThreadsOf, BodiesThatConductDifferentlyOf20Steps) {
+  Scene scene = melting_block(TypeParam::dim);
+  scene.fluid.bodies.emplace_back().diffusivity = 1e-2;
   expect_same_bits<TypeParam::dim, typename TypeParam::Real>(scene, 20);
 }
 

@@ -23,6 +23,7 @@
 #include "core/boundary/wall_integrals.h"
 #include "core/boundary/wall_support.h"
 #include "core/pair_pass.h"
+#include "core/physics/heat_interface.h"
 
 namespace molten {
 namespace wall_terms_detail {
@@ -290,8 +291,9 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     // The flux through the layer is that through the fluid: k (T_i − T)/reach = k_l (T − T_behind)/thickness.
     const L layer(static_cast<Real>(skin.layer_diffusivity / skin.layer_thickness));
     L own = L(static_cast<Real>(parameters_.diffusivity)) / n.reach;
-    if constexpr (is_among<Conductivity, Reads>)
-      if (particles_.has(conductivity)) own = own * i[conductivity];
+    if constexpr (is_among<InterfaceResistance, Reads>)
+      if (particles_.has(conductivity))
+        own = own * series_conductivity<Real>(i[interface_distance], i[interface_resistance]);
     return (own * i[local_temperature] + layer * there) / (own + layer);
   }
 

@@ -1,15 +1,17 @@
 // Heat conduction dT/dt = k ∇²T (Cleary & Monaghan; [P] 6-2): dT_i/dt = k Σ 4 m_j/(ρ_i + ρ_j) (T_i − T_j) W'/r, the
 // form that conserves heat to round-off. [P] 6-9 lacks a factor 2: it gives half of ∇²T.
-// Where conductivities differ, k is the harmonic mean of both particles' (Cleary & Monaghan 1999): the flux through a
-// contact is then that of both sides. Density times heat capacity is the same everywhere.
+// Where conductivities differ, the flux between two particles is that through both their materials in series, each as
+// thick as its particle is far from the interface, d (heat_interface.h): k = (d_i + d_j)/(d_i/k_i + d_j/k_j), which
+// with an interface half-way is the harmonic mean (Cleary & Monaghan 1999). Density times heat capacity is the same
+// everywhere.
 // Corrected: times the mean of the particles' factors (gradient_correction.h), which conserves heat as well.
 #pragma once
 
-#include <limits>
 #include <type_traits>
 
 #include "core/fields.h"
 #include "core/physics/gradient_correction.h"
+#include "core/physics/heat_interface.h"
 #include "core/simd.h"
 
 namespace molten {
@@ -18,7 +20,7 @@ namespace molten {
 template <class Real, bool corrected = false, bool may_vary = false> struct HeatConduction {
   using Reads = typename UnionOf<FieldList<LocalTemperature, Compression>,
                                  std::conditional_t<corrected, FieldList<LaplacianCorrection>, FieldList<>>,
-                                 std::conditional_t<may_vary, FieldList<Conductivity>, FieldList<>>>::type;
+                                 std::conditional_t<may_vary, InterfaceReads, FieldList<>>>::type;
   using Sums = FieldList<TemperatureRate>;
   bool on = false;
   Real strength = 0;  // 4 k/ρ0, m⁵/(kg s)
@@ -34,14 +36,8 @@ template <class Real, bool corrected = false, bool may_vary = false> struct Heat
     L factor = L(strength) * reciprocal(L(2) + i[compression] + j[compression]);
     if constexpr (corrected) factor = factor * laplacian_correction_of(i, j);
     if constexpr (may_vary)
-      if (varied) factor = factor * harmonic_mean(i[conductivity], j[conductivity]);
+      if (varied) factor = factor * conductivity_between<Real>(i, j);
     out.gradW(temperature_rate, factor * (i[local_temperature] - j[local_temperature]));
-  }
-
- private:
-  template <class L> [[gnu::always_inline]] static L harmonic_mean(const L& a, const L& b) {
-    const L tiny(std::numeric_limits<Real>::min() * Real(1e8));  // padding has none
-    return L(2) * a * b * reciprocal(a + b + tiny);
   }
 };
 

@@ -1,6 +1,8 @@
 // Heat conduction: decay of a wave and two slabs in contact against their exact solutions, the kernel's known factor on
-// a lattice, heat that is neither made nor lost, and a melting front.
+// a lattice, heat that is neither made nor lost, interfaces of bodies, and a melting front.
 #include <fmt/format.h>
+
+#include <map>
 
 #include "tests/physics/case.h"
 
@@ -172,6 +174,69 @@ TYPED_TEST(InsulatedBody, KeepsItsHeat) {
   EXPECT_GT(alike, 0.02);
   EXPECT_LT(cold_insulates, alike);
   EXPECT_GT(cold_insulates, 0.001);
+}
+
+// ---- where bodies that conduct differently meet ---------------------------------------------------------------------
+
+/// Blocks of 12 and 12 columns, the right one conducting 10 times as well.
+template <int Dim, class Real> State<Dim, Real> two_blocks(double displacement) {
+  Scene scene = heated_scene(Dim, 1e-4, 1.3);
+  scene.fluid.bodies.emplace_back().diffusivity = 10 * diffusivity;
+  Start start = lattice(Dim, {24, 15, 15}, 1);
+  for (const Triple& x : start.position) {
+    start.temperature.push_back(0);
+    start.conductivity.push_back(x[0] < 12 ? 1 : 10);
+  }
+  jitter(start, Dim, displacement);
+  auto s = state_of<Dim, Real>(scene, start);
+  find_all_rates(s);
+  return s;
+}
+
+/// Calls f(distance of the plane, what the particle found), in spacings; what the column beside it finds on the lattice
+/// counts as half a spacing, as only ratios matter.
+template <int Dim, class Real, class F> void for_each_distance(double displacement, const F& f) {
+  const auto even = two_blocks<Dim, Real>(0), s = two_blocks<Dim, Real>(displacement);
+  double factor = 0;
+  for_each_particle(even, [&](std::size_t slot) {
+    if (std::abs(even.particles[position][0][slot] - 11.5) < 0.1)
+      factor = 2 * even.particles[interface_distance][0][slot];
+  });
+  for_each_particle(s, [&](std::size_t slot) {
+    const double d = s.particles[interface_distance][0][slot], k = s.particles[conductivity][0][slot];
+    EXPECT_NEAR(d / k, s.particles[interface_resistance][0][slot], 1e-6 * d);
+    f(std::abs(s.particles[position][0][slot] - 12), d / factor);
+  });
+}
+
+template <class F> class Interface : public ::testing::Test {
+ protected:
+  OneThread one;
+};
+TYPED_TEST_SUITE(Interface, Flavours, FlavourNames);
+
+TYPED_TEST(Interface, IsAsFarAsThePlane) {
+  std::map<double, int> seen;
+  for_each_distance<TypeParam::dim, typename TypeParam::Real>(0, [&](double exact, double found) {
+    ++seen[exact];
+    if (exact < 2)
+      EXPECT_NEAR(found / exact, 1, 0.1) << exact;
+    else
+      EXPECT_GT(found, 2) << exact;
+  });
+  EXPECT_EQ(seen.size(), 12);
+}
+
+TYPED_TEST(Interface, IsAsFarAsThePlaneInDisorder) {
+  double sum2 = 0;
+  int count = 0;
+  for_each_distance<TypeParam::dim, typename TypeParam::Real>(0.2, [&](double exact, double found) {
+    if (exact > 1.5) return;
+    ++count;
+    sum2 += (found - exact) * (found - exact);
+  });
+  this->RecordProperty("rms", fmt::format("{:.3g}", std::sqrt(sum2 / count)));
+  EXPECT_LT(std::sqrt(sum2 / count), 0.15) << "spacings";
 }
 
 // ---- two slabs in contact, and the front in between that melts ------------------------------------------------------
