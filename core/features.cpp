@@ -8,6 +8,18 @@ namespace molten {
 
 namespace {
 
+/// Single precision holds conductivities over the scene's, and resistances, that far apart.
+void require_sensible_conduction(const Scene& scene) {
+  constexpr double furthest = 1e12;
+  for (std::size_t k = 0; scene.fluid.heat && k < scene.fluid.bodies.size(); ++k) {
+    const double ratio =
+        scene.fluid.bodies[k].diffusivity.value_or(scene.fluid.heat->diffusivity) / scene.fluid.heat->diffusivity;
+    if (!(ratio <= furthest && ratio >= 1 / furthest))
+      refuse(scene, "fluid.body." + std::to_string(k) + ".diffusivity",
+             "is further than a factor of 10^12 from that of [fluid.heat]; bring them closer");
+  }
+}
+
 void require_sensible_fluid(const Scene& scene) {
   const Rheology& r = scene.fluid.rheology;
   const bool smd = r.model == Rheology::Model::smd;
@@ -193,6 +205,7 @@ const char* name_of(IntegratorKind kind) {
 
 Features features_of(const Scene& scene) {
   require_sensible_fluid(scene);
+  require_sensible_conduction(scene);
   require_sensible_density(scene);
   require_sensible_numerics(scene);
   require_sensible_sleep(scene);

@@ -104,7 +104,7 @@ TEST(Features, HeatAddsItsColumns) {
 TEST(Features, BodiesThatConductDifferentlyAddTheirConductivity) {
   expect_adds(
       [](Scene& s) {
-        s.fluid.heat = Heat{};
+        s.fluid.heat = Heat{2, std::nullopt, 20, 20};
         s.fluid.bodies.emplace_back().diffusivity = 1;
       },
       {{"temperature", "local_temperature", "temperature_rate", "conductivity", "interface_distance",
@@ -262,6 +262,22 @@ std::string refusal(const std::function<void(Scene&)>& edit) {
 void expect_refused(const std::function<void(Scene&)>& edit, const std::string& reason) {
   const std::string line = refusal(edit);
   EXPECT_TRUE(line.starts_with("bad.toml: " + reason)) << line;
+}
+
+TEST(Features, RefusesConductivitiesTooFarApart) {
+  for (const double k : {1e-13, 1e-300, 1e13})
+    expect_refused(
+        [k](Scene& s) {
+          s.fluid.heat = Heat{1, std::nullopt, 20, 20};
+          s.fluid.bodies.resize(2);
+          s.fluid.bodies[1].diffusivity = k;
+        },
+        "fluid.body.1.diffusivity: is further than a factor of 10^12");
+  const auto within = [](Scene& s) {
+    s.fluid.heat = Heat{1, std::nullopt, 20, 20};
+    s.fluid.bodies.emplace_back().diffusivity = 1e-12;
+  };
+  EXPECT_EQ(refusal(within), "");
 }
 
 TEST(Features, RefusesWhatMakesNoSense) {
