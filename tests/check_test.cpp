@@ -9,7 +9,7 @@ namespace {
 using CheckTest = ProgramTest;
 
 TEST_F(CheckTest, SaysWhereAMeshIsBroken) {
-  const std::string broken = cube.substr(0, cube.rfind("f 4 5 8"));
+  const std::string broken = cube_obj.substr(0, cube_obj.rfind("f 4 5 8"));
   write_bytes(folder.path() / "cube.obj", broken);
   const Outcome o = molten_program({"check", scene(mesh_scene("cube.obj")).string()});
   EXPECT_EQ(o.code, 3) << o.err;

@@ -103,14 +103,14 @@ TEST_F(BadFile, MeshesThatEncloseNothing) {
     file("a mesh.obj", bytes);
     expect_bad(mesh_scene("a mesh.obj"), 3, {"a mesh.obj", why});
   };
-  expect_bad_mesh(cube.substr(0, cube.find("f 4 5 8")), "not closed");
-  expect_bad_mesh(inside_out(cube), "inside out");
-  expect_bad_mesh(replaced(cube, "f 4 5 8", "f 4 8 5"), "opposite ways");
+  expect_bad_mesh(cube_obj.substr(0, cube_obj.find("f 4 5 8")), "not closed");
+  expect_bad_mesh(inside_out(cube_obj), "inside out");
+  expect_bad_mesh(replaced(cube_obj, "f 4 5 8", "f 4 8 5"), "opposite ways");
   expect_bad_mesh("", "empty");
   expect_bad_mesh("v 0 0 0\nv 1 0 0\n", "");
-  expect_bad_mesh(cube.substr(0, cube.size() - 4), "");
-  expect_bad_mesh(replaced(cube, "f 4 5 8", "f 4 5 99"), "");
-  expect_bad_mesh(replaced(cube, "v 1 1 1", "v 1 nan 1"), "");
+  expect_bad_mesh(cube_obj.substr(0, cube_obj.size() - 4), "");
+  expect_bad_mesh(replaced(cube_obj, "f 4 5 8", "f 4 5 99"), "");
+  expect_bad_mesh(replaced(cube_obj, "v 1 1 1", "v 1 nan 1"), "");
 }
 
 TEST_F(BadFile, RaggedGrid) {

@@ -164,7 +164,7 @@ TEST_F(Commands, SummaryHasItsKeys) {
 }
 
 TEST_F(Commands, ManifestSaysWhatRanWhereAndFromWhat) {
-  file("cube.obj", cube);
+  file("cube.obj", cube_obj);
   ASSERT_EQ(run(mesh_scene("cube.obj")).code, 0);
   const auto manifest = json_of(out / "manifest.json");
   for (const char* key : {"version", "commit", "compiler", "cpu", "threads", "fingerprint", "features", "passes"})
@@ -174,7 +174,7 @@ TEST_F(Commands, ManifestSaysWhatRanWhereAndFromWhat) {
   EXPECT_EQ(manifest["files"][0]["hash"].get<std::string>().size(), 16u);
   EXPECT_EQ(manifest["fingerprint"].get<std::string>().size(), 16u);
   const std::string hash = manifest["files"][0]["hash"];
-  file("cube.obj", cube + "# changed\n");
+  file("cube.obj", cube_obj + "# changed\n");
   ASSERT_EQ(run(mesh_scene("cube.obj"), {"--overwrite"}).code, 0);
   EXPECT_NE(json_of(out / "manifest.json")["files"][0]["hash"], hash);
 }
@@ -187,7 +187,7 @@ TEST_F(Commands, OverridesAreKeptWithTheRun) {
 }
 
 TEST_F(Commands, CheckSaysWhatARunWouldTake) {
-  file("cube.obj", cube);
+  file("cube.obj", cube_obj);
   const Outcome o = molten_program({"check", scene(mesh_scene("cube.obj")).string(), "--set", "run.end_time=0.1"});
   EXPECT_EQ(o.code, 0);
   EXPECT_EQ(o.err, "");
@@ -207,7 +207,7 @@ TEST_F(Commands, InfoReadsWhatARunLeaves) {
   expect_told(out, {"manifest.json", "summary.json", "checkpoint", "3 frames", "140 particles"});
   expect_told(out / "frames/000001.hdf", {"t = 0.02 s", "140 particles", "2-D", "velocity", "density", "pressure"});
   expect_told(out / "checkpoints/step-000000000.h5", {"checkpoint", "step 0"});
-  expect_told(file("cube.obj", cube), {"8 vertices", "12 triangles", "volume 1 "});
+  expect_told(file("cube.obj", cube_obj), {"8 vertices", "12 triangles", "volume 1 "});
 }
 
 TEST_F(Commands, InfoOfARunWithoutFrames) {
