@@ -3,7 +3,6 @@
 #include "core/physics/density_coupling.h"
 #include "core/physics/density_diffusion.h"
 #include "core/physics/gradient_correction.h"
-#include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
 #include "core/physics/pairwise_stress.h"
 #include "core/physics/shifting.h"
@@ -94,8 +93,7 @@ template <int Dim, class Real> void corrected_rates_pass(State<Dim, Real>& s) {
   if (f.stress || f.heat || f.xsph || f.monaghan_viscosity)
     pass(MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
          StressForce<Dim, Real>(f.stress && !f.pairwise_stress, rho0, p.kernel_second_moment),
-         PairwiseStress<Dim, Real>(f.pairwise_stress, !f.heat, rho0),
-         HeatConduction<Real, corrected, true>(f.heat ? p.diffusivity : 0, rho0, f.varied_conduction), diffusion,
+         PairwiseStress<Dim, Real>(f.pairwise_stress, !f.heat, rho0), heat_conduction_of<corrected>(s), diffusion,
          coupling, XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density));
   else if (coupling.on || diffusion.on)
     pass(diffusion, coupling);

@@ -269,6 +269,7 @@ FieldSet Features::columns() const {
   if (stages() > 2 && heat) s |= field_set(FieldList<TemperatureSlope>{});
   if (heat) s |= field_set(FieldList<Temperature, LocalTemperature, TemperatureRate>{});
   if (varied_conduction) s |= field_set(FieldList<Conductivity, InterfaceDistance, InterfaceResistance>{});
+  if (heat_at_walls()) s |= field_set(FieldList<HeatCompletion>{});
   if (stress) s |= field_set(FieldList<Viscosity>{});
   if (stress && !pairwise_stress) s |= field_set(FieldList<Stress>{});
   if (pairwise_stress) s |= field_set(FieldList<StrainRate, Vorticity, Thinning, Inner>{});
@@ -298,6 +299,7 @@ std::vector<std::string> Features::passes() const {
   if (gradient_correction) p.push_back("corrections");
   if (sleep) p.push_back("wake and rest");
   if (varied_conduction) p.push_back("interfaces");
+  if (twice_at_walls()) p.push_back("walls");
   if (stress) p.push_back("viscosity");
   p.push_back(heat ? "forces and heat" : "forces");
   if (levels) p.push_back("stages");

@@ -50,9 +50,14 @@ struct Features {
   /// Beside the basic ones, one force only, XSPH or heat, or both that melting takes: passes with nothing else serve.
   bool only_one_more_force() const {
     const int more = stress + heat + (laminar && !monaghan_viscosity) + xsph;
-    return !density_diffusion && !monaghan_viscosity && !varied_conduction &&
+    return !density_diffusion && !monaghan_viscosity && !varied_conduction && !heat_at_walls() &&
            (more == 1 || (more == 2 && stress && heat));
   }
+
+  /// Insulating walls hide some of the support from heat.
+  bool heat_at_walls() const { return heat && wall_support; }
+  /// More than one pass asks what is near walls.
+  bool twice_at_walls() const { return wall_support && (stress || heat); }
 
   /// How often a step finds rates: once, or once a stage of a Runge-Kutta method.
   int stages() const;

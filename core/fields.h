@@ -53,6 +53,8 @@ MOLTEN_FIELD(Conductivity, ScalarField, conductivity, "1", "thermal conductivity
 MOLTEN_FIELD(InterfaceDistance, ScalarField, interface_distance, "1",
              "distance from what conducts differently, over the kernel's reach");
 MOLTEN_FIELD(InterfaceResistance, ScalarField, interface_resistance, "1", "that distance over the conductivity");
+MOLTEN_FIELD(HeatCompletion, ScalarField, heat_completion, "1",
+             "factor that makes up for the support behind insulating walls");
 
 MOLTEN_FIELD(Inlet, IdScalar, inlet, "1", "number of the vent that still pushes the particle; -1: none");
 
@@ -136,7 +138,7 @@ using AllFields =
               CompressionSlope, TemperatureSlope, FilteredCompression, InternalEnergy, InternalEnergyRate, EnergyShare,
               RestTime, HeatRestTime, RestTemperature, Inlet, Held, StrainRate, Vorticity, Thinning, Inner,
               CouplingRate, StiffAcceleration, StartVelocity, StageChange, EarlierChange, LaplacianTilt, LaplacianBend,
-              Conductivity, InterfaceDistance, InterfaceResistance>;
+              Conductivity, InterfaceDistance, InterfaceResistance, HeatCompletion>;
 
 // ---- list arithmetic at compile time --------------------------------------------------------------------------------
 

@@ -1,7 +1,6 @@
 // Heat where nothing moves: the conduction pass alone, over the warm particles, a few steps at a time.
 #include <cmath>
 
-#include "core/physics/heat_conduction.h"
 #include "core/rates_pass.h"
 
 namespace molten {
@@ -11,8 +10,7 @@ template <int Dim, class Real> void conduct_at_rest(State<Dim, Real>& s) {
   const double dt = std::exchange(s.sleep.warm_time, 0);
   const std::size_t first = s.neighbours.first_slot(Block::warm), end = s.neighbours.first_slot(Block::active);
   if (first == end) return;
-  const HeatConduction<Real, false, true> conduction(s.parameters.diffusivity, s.parameters.eos.rest_density,
-                                                     s.features.varied_conduction);
+  const auto conduction = heat_conduction_of<false>(s);
   const auto finish = PlainFinish{
       [rate = p[temperature_rate][0]](std::size_t slot, const auto& sums) { rate[slot] = sums[temperature_rate]; }};
   with_run_kernel(s, [&](const auto& kernel) {

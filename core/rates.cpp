@@ -5,7 +5,6 @@
 
 #include "core/physics/continuity.h"
 #include "core/physics/density_diffusion.h"
-#include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
 #include "core/physics/pairwise_stress.h"
 #include "core/physics/viscous_stress.h"
@@ -85,8 +84,7 @@ template <int Dim, class Real> void find_rates(State<Dim, Real>& s) {
   else
     pass(artificial, LaminarViscosity<Real>(s.features.morris_viscosity() ? p.viscosity : 0, rho0),
          MonaghanViscosity<Dim, Real>(s.features.monaghan_viscosity ? p.viscosity : 0, rho0),
-         StressForce<Dim, Real>(s.features.stress, rho0, p.kernel_second_moment),
-         HeatConduction<Real, false, true>(s.features.heat ? p.diffusivity : 0, rho0, s.features.varied_conduction),
+         StressForce<Dim, Real>(s.features.stress, rho0, p.kernel_second_moment), heat_conduction_of<false>(s),
          diffusion, XsphTerm<Real>(s.features.xsph, rho0, p.xsph_neighbour_density));
 }
 

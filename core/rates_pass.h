@@ -7,6 +7,7 @@
 #include "core/boundary/wall_terms.h"
 #include "core/pair_pass.h"
 #include "core/physics/artificial_viscosity.h"
+#include "core/physics/heat_conduction.h"
 #include "core/step.h"
 
 namespace molten {
@@ -146,6 +147,14 @@ void run_rates_pass_at_walls(State<Dim, Real>& s, const Terms&... terms) {
 template <int Dim, class Real> ArtificialViscosity<Real> artificial_viscosity_of(const State<Dim, Real>& s) {
   const Parameters<Dim>& p = s.parameters;
   return {p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, p.eos.rest_density};
+}
+
+/// The heat conduction of the run, in a pass that serves all scenes with heat.
+template <bool corrected, int Dim, class Real>
+HeatConduction<Real, corrected, true> heat_conduction_of(const State<Dim, Real>& s) {
+  const Features& f = s.features;
+  const Parameters<Dim>& p = s.parameters;
+  return {f.heat ? p.diffusivity : 0, p.eos.rest_density, {f.varied_conduction, f.heat_at_walls()}};
 }
 
 /// The rates passes in files of their own: with one force beside the basic ones or with what melts, with corrected

@@ -2,7 +2,6 @@
 // sound speeds, internal energy, repulsive boundary particles. Everything else that a scene may have is in it as well.
 #include "core/physics/continuity.h"
 #include "core/physics/density_coupling.h"
-#include "core/physics/heat_conduction.h"
 #include "core/physics/laminar_viscosity.h"
 #include "core/physics/muller_viscosity.h"
 #include "core/physics/shifting.h"
@@ -46,18 +45,18 @@ void seldom_pass(State<Dim, Real>& s, const Terms&... terms) {
   const Parameters<Dim>& p = s.parameters;
   const double rho0 = p.eos.rest_density;
   const auto pushed = [&](const auto& finish) { return WithRepulsion(s.repulsion, s.particles, finish); };
-  run_rates_pass_with(s, pushed,
-                      WithWork(f.internal_energy, OneOfPressures{f.half_pressure},
-                               ArtificialViscosity<Real, true>(p.artificial_viscosity, p.eos.sound_speed,
-                                                               p.smoothing_length, rho0, f.particle_sound_speed),
-                               TensileCorrection<Real>(f.tensile_correction, kernel_at_spacing<Dim, Real>(p)),
-                               LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
-                               MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
-                               MullerViscosity<Dim, Real>(f.muller_viscosity ? p.viscosity : 0, p.particle_mass, rho0,
-                                                          p.support_radius),
-                               StressForce<Dim, Real>(f.stress, rho0, p.kernel_second_moment)),
-                      HeatConduction<Real, corrected, true>(f.heat ? p.diffusivity : 0, rho0, f.varied_conduction),
-                      XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density), terms...);
+  run_rates_pass_with(
+      s, pushed,
+      WithWork(
+          f.internal_energy, OneOfPressures{f.half_pressure},
+          ArtificialViscosity<Real, true>(p.artificial_viscosity, p.eos.sound_speed, p.smoothing_length, rho0,
+                                          f.particle_sound_speed),
+          TensileCorrection<Real>(f.tensile_correction, kernel_at_spacing<Dim, Real>(p)),
+          LaminarViscosity<Real, corrected>(f.morris_viscosity() ? p.viscosity : 0, rho0),
+          MonaghanViscosity<Dim, Real, corrected>(f.monaghan_viscosity ? p.viscosity : 0, rho0),
+          MullerViscosity<Dim, Real>(f.muller_viscosity ? p.viscosity : 0, p.particle_mass, rho0, p.support_radius),
+          StressForce<Dim, Real>(f.stress, rho0, p.kernel_second_moment)),
+      heat_conduction_of<corrected>(s), XsphTerm<Real>(f.xsph, rho0, p.xsph_neighbour_density), terms...);
 }
 
 }  // namespace

@@ -13,9 +13,8 @@ namespace molten {
 
 namespace {
 
-/// For the passes of viscosity and of forces.
 template <int Dim, class Real> void find_wall_patches(State<Dim, Real>& s) {
-  const auto scope = s.timer.scope("viscosity");
+  const auto scope = s.timer.scope("walls");
   s.wall_support.find_patches(s.particles, s.neighbours.first_slot(Block::active));
 }
 
@@ -86,8 +85,9 @@ template <int Dim, class Real> void find_all_rates(State<Dim, Real>& s) {
   if (s.features.gradient_correction) find_corrections(s);
   if (s.features.consistent_laplacian) find_laplacian_weights(s);
   if (s.features.varied_conduction) find_interfaces(s);
-  const bool twice_at_walls = s.features.stress && s.features.wall_support;
+  const bool twice_at_walls = s.features.twice_at_walls();
   if (twice_at_walls) find_wall_patches(s);
+  if (s.features.heat_at_walls()) find_heat_completions(s);
   if (s.features.stress) find_viscosity(s);
   find_rates(s);
   if (twice_at_walls) s.wall_support.forget_patches();

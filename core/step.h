@@ -37,6 +37,9 @@ template <int Dim, class Real> void find_laplacian_weights(State<Dim, Real>& s);
 /// How far particles are from those that conduct differently. Only where bodies do.
 template <int Dim, class Real> void find_interfaces(State<Dim, Real>& s);
 
+/// What insulating walls hide of the particles' support. Only where heat meets walls with support.
+template <int Dim, class Real> void find_heat_completions(State<Dim, Real>& s);
+
 /// Lets a vent's next layer of particles in when there is room for it; puts the first ones in at the start of a run.
 template <int Dim, class Real> void emit(State<Dim, Real>& s);
 template <int Dim, class Real> void open_vents(State<Dim, Real>& s);

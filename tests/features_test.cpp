@@ -114,6 +114,15 @@ TEST(Features, BodiesThatConductDifferentlyAddTheirConductivity) {
   expect_adds([](Scene& s) { s.fluid.bodies.emplace_back().diffusivity = 1; }, {});  // no heat
 }
 
+TEST(Features, HeatBesideWallsWithSupportAddsWhatTheyHide) {
+  const auto walls = [](Scene& s) { s.boundaries.emplace_back(), s.numerics.wall_support = true; };
+  expect_adds([&](Scene& s) { walls(s), s.fluid.heat = Heat{}; },
+              {{"temperature", "local_temperature", "temperature_rate", "heat_completion"},
+               {"forces", "integrate"},
+               {"walls", "forces and heat", "integrate and collide"}});
+  expect_adds(walls, {{}, {"integrate"}, {"integrate and collide"}});
+}
+
 TEST(Features, VaryingViscosityAddsItsPass) {
   expect_adds([](Scene& s) { s.fluid.rheology.model = Rheology::Model::smd; },
               {{"viscosity", "stress"}, {}, {"viscosity"}});

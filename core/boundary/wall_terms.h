@@ -9,8 +9,10 @@
 //   that leaves a wall, or that a wall leaves, is not stretched: there the gap fills with air. Else what is under the
 //   edge of a rising gate is torn, and the front that springs from there hits three times too hard.
 // - Along the wall a particle misses the part h of its support: its acceleration is multiplied by
-//   (1 − Σ h (1 − n n))^−1. Sums for temperature and strain rate are divided by 1 − Σ h (Ferrand et al. 2013),
-//   which makes them exact for linear fields, and the viscous and heat fluxes for quadratic ones, at a plane.
+//   (1 − Σ h (1 − n n))^−1. Sums for the strain rate are divided by 1 − Σ h (Ferrand et al. 2013), which makes them
+//   exact for linear fields, and the viscous flux for quadratic ones, at a plane.
+// - Heat: a wall with a temperature conducts as a neighbour, exact for temperatures linear along n; what the others
+//   hide the pairs make up for themselves, so that heat is kept (insulation.h).
 // - Bodies: their pieces move with them. What a particle gets beside the pair forces, which are each other's opposite,
 //   comes from the walls, so a body gets the opposite of its share, at the particle: linear and angular momentum stay.
 #pragma once
@@ -24,11 +26,10 @@
 #include "core/boundary/wall_support.h"
 #include "core/pair_pass.h"
 #include "core/physics/heat_interface.h"
+#include "core/physics/insulation.h"
 
 namespace molten {
 namespace wall_terms_detail {
-
-constexpr double most_hidden = 0.9;  // in a cleft that hardly leaves room to the fluid
 
 /// A piece of a wall as the neighbour of the particles in the lanes of L.
 template <int Dim, class L> struct WallNeighbour {
@@ -202,7 +203,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
         shares.back().along += part;
       }
     });
-    const double limited = std::min(hidden, wall_terms_detail::most_hidden);
+    const double limited = std::min(hidden, most_hidden);
     const double kept = hidden > limited ? limited / hidden : 1;
     along *= kept;
     (join(F{}, sums[F{}], walls[F{}], L(static_cast<Real>(1 / (1 - limited))),
@@ -312,6 +313,10 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   }
   template <class L, class V, class Along>
   static void join(CrowdingGradient, V& sum, const V& walls, const L&, const Along&) {
+    sum += walls;
+  }
+  template <class L, class Along>  // its pairs are whole already
+  static void join(TemperatureRate, L& sum, const L& walls, const L&, const Along&) {
     sum += walls;
   }
   template <class L, class Along>  // a sum of W, not of ∇W

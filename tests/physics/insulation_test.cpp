@@ -1,0 +1,132 @@
+// Heat beside insulating walls with support: it is kept, and it is conducted along them as far from them.
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "tests/physics/case.h"
+
+namespace molten::insulation_test {
+namespace {
+
+using namespace physics_case;
+
+constexpr double spacing = 0.05, diffusivity = 0.05;
+
+template <int Dim, class Real> State<Dim, Real> state_from(const std::string& text) {
+  const Scene scene = parse_scene(text, "s.toml");
+  return state_of<Dim, Real>(scene, fill_bodies(scene, features_of(scene)));
+}
+
+std::string box(int dimensions, double width, double bottom, double top) {
+  return dimensions == 2
+             ? fmt::format("box = {{ min = [0, {}], max = [{}, {}] }}", bottom, width, top)
+             : fmt::format("box = {{ min = [0, {}, 0], max = [{}, {}, {}] }}", bottom, width, top, 6 * spacing);
+}
+
+/// A closed tank with fluid up to two thirds of its height, whose lowest row, on the floor, is hot and conducts
+/// `ratio` times as well.
+std::string tank(int dimensions, double ratio, const std::string& velocity, const std::string& numerics) {
+  const double width = 10 * spacing, height = 6 * spacing;
+  return fmt::format(
+      "[scene]\ndimensions = {}\ngravity = {}\n[fluid]\nspacing = {}\n[fluid.heat]\ndiffusivity = {}\n"
+      "[[fluid.body]]\n{}\ntemperature = 100\ndiffusivity = {}\nvelocity = {}\n"
+      "[[fluid.body]]\n{}\ntemperature = 0\nvelocity = {}\n"
+      "[[boundary]]\n{}\ninside = true\n[numerics]\npreset = \"basic\"\nwall_support = true\ndensity_diffusion = 0.1\n"
+      "sound_speed = 10\n{}\n[run]\nend_time = 10\n",
+      dimensions, dimensions == 2 ? "[0, 0]" : "[0, 0, 0]", spacing, diffusivity, box(dimensions, width, 0, spacing),
+      ratio * diffusivity, velocity, box(dimensions, width, spacing, height), velocity,
+      box(dimensions, width, 0, 1.5 * height), numerics);
+}
+
+template <int Dim> const char* sideways() { return Dim == 2 ? "[0.5, 0.2]" : "[0.5, 0.2, 0.3]"; }
+template <int Dim> const char* at_rest() { return Dim == 2 ? "[0, 0]" : "[0, 0, 0]"; }
+
+template <class F> class InsulatedTank : public ::testing::Test {
+ protected:
+  OneThread one;
+};
+TYPED_TEST_SUITE(InsulatedTank, Flavours, FlavourNames);
+
+/// The hottest that is left of 100.
+template <int Dim, class Real> double hottest(const State<Dim, Real>& s) {
+  double most = 0;
+  for_each_particle(s, [&](std::size_t slot) { most = std::max(most, s.particles[temperature][0][slot]); });
+  return most;
+}
+
+TYPED_TEST(InsulatedTank, KeepsItsHeat) {
+  MOLTEN_FLAVOUR;
+  double worst = 0;
+  for (const char* numerics : {"", "gradient_correction = true\nshifting = true", "integrator = \"runge_kutta_4\""})
+    for (const double ratio : {1.0, 0.1}) {
+      auto s = state_from<Dim, Real>(tank(Dim, ratio, sideways<Dim>(), numerics));
+      const double before = diagnose(s).heat;
+      for (int k = 0; k < 150; ++k) step(s);
+      const double drift = std::abs(diagnose(s).heat / before - 1);
+      worst = std::max(worst, drift);
+      EXPECT_LT(drift, TypeParam::single ? 1e-7 : 1e-12) << numerics << ' ' << ratio;
+      EXPECT_LT(hottest(s), ratio == 1 ? 75 : 95) << "or nothing flowed";
+    }
+  this->RecordProperty("drift", fmt::format("{:.3g}", worst));
+}
+
+TYPED_TEST(InsulatedTank, KeepsItsHeatAtRest) {
+  MOLTEN_FLAVOUR;
+  auto s = state_from<Dim, Real>(tank(Dim, 1, at_rest<Dim>(), "sleep = { after = 0.005 }"));
+  const double before = diagnose(s).heat;
+  while (s.sleep.asleep < static_cast<std::int64_t>(s.particles.count()) && s.clock.time < 0.1) step(s);
+  const double warm = hottest(s);
+  EXPECT_GT(s.sleep.warm, 0);
+  run_until(s, s.clock.time + 0.1);
+  EXPECT_LT(hottest(s), 0.9 * warm) << "or nothing flowed";
+  EXPECT_NEAR(diagnose(s).heat / before, 1, 1e-4);
+}
+
+// ---- along walls ----------------------------------------------------------------------------------------------------
+
+/// A channel along x, closed on itself, between two planes, `rows` high, or high and without walls; a wave of
+/// temperatures lies along it. What is left of it after it fell to 1/e by theory.
+template <int Dim, class Real> double left_of_wave(int rows, bool walls, const std::string& numerics) {
+  const double length = 40 * spacing, height = rows * spacing, depth = 6 * spacing;
+  const bool flat = Dim == 2;
+  std::string text = fmt::format(
+      "[scene]\ndimensions = {}\ngravity = {}\nperiodic = [{}{}]\ndomain = {}\n[fluid]\nspacing = {}\n{}\n"
+      "[fluid.heat]\ndiffusivity = {}\ninitial = 0\n[run]\nend_time = 10\n",
+      Dim, flat ? "[0, 0]" : "[0, 0, 0]", walls ? "\"x\"" : "\"x\", \"y\"", flat ? "" : ", \"z\"",
+      flat ? fmt::format("{{ min = [0, {0}], max = [{1}, {2}] }}", walls ? -1 : 0, length, walls ? 2 * height : height)
+           : fmt::format("{{ min = [0, {0}, 0], max = [{1}, {2}, {3}] }}", walls ? -1 : 0, length,
+                         walls ? 2 * height : height, depth),
+      spacing, box(Dim, length, 0, height), diffusivity);
+  if (walls)
+    text += fmt::format(
+        "[[boundary]]\nplane = {{ point = {0}, normal = {1} }}\n[[boundary]]\nplane = {{ point = {2}, normal = {3} "
+        "}}\n",
+        flat ? "[0, 0]" : "[0, 0, 0]", flat ? "[0, 1]" : "[0, 1, 0]",
+        fmt::format(flat ? "[0, {}]" : "[0, {}, 0]", height), flat ? "[0, -1]" : "[0, -1, 0]");
+  text += "[numerics]\npreset = \"basic\"\nsound_speed = 1\n" + numerics + (walls ? "\nwall_support = true\n" : "\n");
+  const Scene scene = parse_scene(text, "s.toml");
+  Start start = fill_bodies(scene, features_of(scene));
+  const double wave_number = 2 * std::numbers::pi / length;
+  const auto shape = [&](double x) { return std::cos(wave_number * x); };
+  for (std::size_t k = 0; k < start.position.size(); ++k) start.temperature[k] = shape(start.position[k][0]);
+  auto s = state_of<Dim, Real>(scene, start);
+  run_until(s, 1 / (diffusivity * wave_number * wave_number));
+  double sum = 0;
+  for_each_particle(
+      s, [&](std::size_t slot) { sum += s.particles[temperature][0][slot] * shape(s.particles[position][0][slot]); });
+  return 2 * sum / static_cast<double>(s.particles.count());
+}
+
+TYPED_TEST(InsulatedTank, ConductsAlongItsWallsAsFarFromThem) {
+  MOLTEN_FLAVOUR;
+  for (const char* numerics : {"", "gradient_correction = true"}) {
+    const double far = std::log(left_of_wave<Dim, Real>(6, false, numerics));
+    const double beside = std::log(left_of_wave<Dim, Real>(4, true, numerics));
+    this->RecordProperty(*numerics ? "corrected" : "plain", fmt::format("{:.4f}", beside / far));
+    EXPECT_NEAR(beside / far, 1, 0.02) << numerics << "; a ninth less without what walls hide";
+    EXPECT_NEAR(far, -1, 0.03);
+  }
+}
+
+}  // namespace
+}  // namespace molten::insulation_test
