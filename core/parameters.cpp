@@ -44,12 +44,15 @@ double speed_of(const Boundary& b, double arm) {
   return fastest;
 }
 
-/// Turning walls are taken as large as the fluid around them (m).
-double arm_of(const Scene& scene, const Extent& extent) {
+/// m
+double diagonal_of(const Scene& scene, const Extent& extent) {
   double diagonal2 = 0;
   for (int d = 0; d < scene.dimensions; ++d) diagonal2 += std::pow(extent.upper[d] - extent.lower[d], 2);
-  return std::sqrt(diagonal2) / 2;
+  return std::sqrt(diagonal2);
 }
+
+/// Turning walls are taken as large as the fluid around them (m).
+double arm_of(const Scene& scene, const Extent& extent) { return diagonal_of(scene, extent) / 2; }
 
 /// The fluid follows what drives it, and what is much faster than sound counts as a run that blew up.
 void require_slow(const Scene& scene, const std::string& key, double speed, double sound_speed) {
@@ -155,16 +158,17 @@ template <int Dim> double rest_time_of(const Scene& scene, const Parameters<Dim>
 }
 
 /// A thousandth of the sound speed, so a hundredth of the fastest flow; the density rate of a particle that moves so
-/// against its neighbours; a thousandth of the temperatures' range in the time that heat takes to cross a smoothing
-/// length; a hundredth of that range, and more than what rounds away in single precision.
+/// against its neighbours; a thousandth of the temperatures' range in the time that heat takes to cross the fluid, of
+/// `size` (m) (a smoothing length in its place stops what heats a pool from one side); a hundredth of that range, and
+/// more than what rounds away in single precision.
 template <int Dim>
-RestBounds rest_bounds(const Scene& scene, const Parameters<Dim>& p, const Temperatures& temperatures) {
+RestBounds rest_bounds(const Scene& scene, const Parameters<Dim>& p, const Temperatures& temperatures, double size) {
   const SleepBounds& asked = *scene.numerics.sleep;
   RestBounds r;
-  const double h = p.smoothing_length;
+  const double h = p.smoothing_length, way = std::max(size, h);
   r.speed = asked.speed.value_or(1e-3 * p.eos.sound_speed);
   r.density_rate = asked.density_rate.value_or(r.speed / h);
-  r.temperature_rate = asked.temperature_rate.value_or(1e-3 * temperatures.range() * p.diffusivity / (h * h));
+  r.temperature_rate = asked.temperature_rate.value_or(1e-3 * temperatures.range() * p.diffusivity / (way * way));
   r.temperature = std::max(asked.temperature.value_or(0.01 * temperatures.range()), 1e-6 * temperatures.largest());
   r.after = rest_time_of(scene, p, r.speed);
   return r;
@@ -263,7 +267,7 @@ template <int Dim> Parameters<Dim> parameters_of(const Scene& scene, const Start
   p.fixed_dt = n.fixed_dt;
   p.time_step_levels = static_cast<int>(n.time_step_levels);
   p.sort_each_step = n.resort == Resort::each_step;
-  if (n.sleep) p.rest = rest_bounds(scene, p, Temperatures(scene, start));
+  if (n.sleep) p.rest = rest_bounds(scene, p, Temperatures(scene, start), diagonal_of(scene, extent));
   p.domain = domain_of<Dim>(scene, extent, start.spacing);
   return p;
 }

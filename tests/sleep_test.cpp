@@ -222,6 +222,30 @@ TYPED_TEST(SleepOf, HeatFlowsWhereNothingMoves) {
   EXPECT_NEAR(diagnose(s).heat / diagnose(twin).heat, 1, 1e-4);
 }
 
+// The bound of a scene that gives none must let heat flow as long as it crosses the fluid, not a smoothing length.
+TYPED_TEST(SleepOf, HeatCrossesAllOfTheFluid) {
+  MOLTEN_FLAVOUR;
+  Scene scene = conducting_scene(Dim);
+  Start start = start_of(scene, lattice(Dim == 2 ? std::vector{100, 4} : std::vector{100, 2, 2}, spacing), spacing);
+  for (std::size_t k = 0; k < start.position.size(); ++k)
+    start.temperature[k] = start.position[k][0] < 50 * spacing ? 90 : 20;
+  const double h = scene.numerics.smoothing_ratio * spacing, end = 400 * h * h / scene.fluid.heat->diffusivity;
+  const auto temperatures = [&](std::optional<double> bound) {
+    scene.numerics.sleep->temperature_rate = bound;
+    auto s = state_of<Dim, Real>(scene, start);
+    run_until(s, end);
+    EXPECT_EQ(s.sleep.asleep, static_cast<std::int64_t>(s.particles.count()));
+    return by_id(s, temperature, 0);
+  };
+  const auto bounded = temperatures({}), never = temperatures(0);
+  double furthest = 0;
+  for (const auto& [number, value] : bounded) furthest = std::max(furthest, std::abs(value - never.at(number)));
+  this->RecordProperty("furthest", fmt::format("{:.3g}", furthest));
+  EXPECT_LT(furthest, 0.2) << "of 70";
+  EXPECT_GT(never.at(0), 20) << "so far in the hot half";
+  EXPECT_LT(never.at(0), 88) << "heat has come from all over";
+}
+
 TYPED_TEST(SleepOf, HeatAtRestIsConductedAsOftenAsItMust) {
   MOLTEN_FLAVOUR;
   Scene scene = conducting_scene(Dim);
