@@ -128,6 +128,40 @@ TEST_F(WarningTest, FluidAboveABackThatLetsItThrough) {
   EXPECT_EQ(warning(block_scene), "");
 }
 
+/// Two blocks, or the left one alone, beside a box between x = 0.5 m and 0.5 m + thickness; particles see 0.26 m far.
+std::string partitioned(int dimensions, double thickness, bool both) {
+  const auto box = [&](double from, double to, double low, double high) {
+    return dimensions == 2
+               ? fmt::format("box = {{ min = [{}, {}], max = [{}, {}] }}\n", from, low, to, high)
+               : fmt::format("box = {{ min = [{0}, {1}, {1}], max = [{2}, {3}, {3}] }}\n", from, low, to, high);
+  };
+  std::string text = fmt::format("[scene]\ndimensions = {}\n[fluid]\nspacing = 0.1\n[[fluid.body]]\n", dimensions);
+  text += box(0, 0.5, 0, 0.5);
+  if (both) text += "[[fluid.body]]\n" + box(0.5 + thickness, 1 + thickness, 0, 0.5);
+  return text + "[[boundary]]\n" + box(0.5, 0.5 + thickness, -0.5, 3) + "[run]\nend_time = 0.001\n";
+}
+
+TEST_F(WarningTest, AWallThatFluidSeesThrough) {
+  for (const int dimensions : {2, 3}) {
+    const std::string said = warning(partitioned(dimensions, 0.1, true));
+    EXPECT_TRUE(contains(said, "boundary.0: is 0.1 m thick at (0.")) << said;
+    EXPECT_TRUE(contains(said, "less than the 0.26 m that particles see")) << said;
+    EXPECT_EQ(warning(partitioned(dimensions, 0.1, false)), "") << "nothing behind it";
+    EXPECT_EQ(warning(partitioned(dimensions, 0.2, true)), "") << "the nearest are 0.3 m from each other";
+  }
+}
+
+TEST_F(WarningTest, ASheetThatFluidSeesThrough) {
+  file("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 3 2\nf 1 4 3\n");
+  const auto beside_sheet = [](const std::string& more) {
+    return "[fluid]\nspacing = 0.1\n[[fluid.body]]\nbox = { min = [0.3, 0.3, 0.0], max = [0.6, 0.6, 0.3] }\n" + more +
+           "[[boundary]]\nmesh = \"sheet.obj\"\ntwo_sided = true\n[run]\nend_time = 0.001\n";
+  };
+  const std::string below = "[[fluid.body]]\nbox = { min = [0.3, 0.3, -0.3], max = [0.6, 0.6, 0.0] }\n";
+  EXPECT_TRUE(contains(warning(beside_sheet(below)), "boundary.0: is 0 m thick at (0."));
+  EXPECT_EQ(warning(beside_sheet("")), "");
+}
+
 TEST_F(WarningTest, VentsNarrowerThanAParticle) {
   const std::string vent = "[[vent]]\ndisc = { centre = [0.1, 0.9], normal = [0, -1], radius = 1e-4 }\nrate = 1e-5\n";
   EXPECT_TRUE(contains(warning(block_scene + vent), "vent.0: is 0.0002 m wide and its stream one particle"));
