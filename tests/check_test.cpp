@@ -128,6 +128,15 @@ TEST_F(WarningTest, FluidAboveABackThatLetsItThrough) {
   EXPECT_EQ(warning(block_scene), "");
 }
 
+TEST_F(WarningTest, AKernelThatReachesTooFew) {
+  const auto with = [](const std::string& numerics) {
+    return replaced(block_scene, "[run]", "[numerics]\n" + numerics + "\n[run]");
+  };
+  EXPECT_TRUE(contains(warning(with("kernel = \"spiky\"")), "particles see only 1.7 spacings far"));
+  EXPECT_EQ(warning(with("kernel = \"spiky\"\nsmoothing_ratio = 2.6")), "");
+  EXPECT_EQ(warning(with("preset = \"queiroz\"")), "");
+}
+
 /// Two blocks, or the left one alone, beside a box between x = 0.5 m and 0.5 m + thickness; particles see 0.26 m far.
 std::string partitioned(int dimensions, double thickness, bool both) {
   const auto box = [&](double from, double to, double low, double high) {

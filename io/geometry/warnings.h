@@ -11,7 +11,8 @@
 namespace molten {
 
 /// A line each, with place and cure: fluid above the back of a one-sided wall, vents narrower than a particle,
-/// walls that particles on both sides see each other through. `walls`: as they are first placed.
+/// kernels that reach too few neighbours, walls that particles on both sides see each other through. `walls`: as they
+/// are first placed.
 template <int Dim>
 std::vector<std::string> warnings_of(const Scene& scene, const Start& start, const std::vector<Wall<Dim>>& walls);
 
