@@ -10,17 +10,22 @@ namespace {
 
 using namespace physics_case;
 
-constexpr double spacing = 0.05, diffusivity = 0.05;
+constexpr double spacing = 0.05, diffusivity = 0.05, length = 40 * spacing;
 
 template <int Dim, class Real> State<Dim, Real> state_from(const std::string& text) {
   const Scene scene = parse_scene(text, "s.toml");
   return state_of<Dim, Real>(scene, fill_bodies(scene, features_of(scene)));
 }
 
+std::string vector(int dimensions, double x, double y, double z = 0) {
+  return dimensions == 2 ? fmt::format("[{}, {}]", x, y) : fmt::format("[{}, {}, {}]", x, y, z);
+}
+
+constexpr double depth = 6 * spacing;  // in 3-D
+
 std::string box(int dimensions, double width, double bottom, double top) {
-  return dimensions == 2
-             ? fmt::format("box = {{ min = [0, {}], max = [{}, {}] }}", bottom, width, top)
-             : fmt::format("box = {{ min = [0, {}, 0], max = [{}, {}, {}] }}", bottom, width, top, 6 * spacing);
+  return fmt::format("box = {{ min = {}, max = {} }}", vector(dimensions, 0, bottom),
+                     vector(dimensions, width, top, depth));
 }
 
 /// A closed tank with fluid up to two thirds of its height, whose lowest row, on the floor, is hot and conducts
@@ -33,13 +38,10 @@ std::string tank(int dimensions, double ratio, const std::string& velocity, cons
       "[[fluid.body]]\n{}\ntemperature = 0\nvelocity = {}\n"
       "[[boundary]]\n{}\ninside = true\n[numerics]\npreset = \"basic\"\nwall_support = true\ndensity_diffusion = 0.1\n"
       "sound_speed = 10\n{}\n[run]\nend_time = 10\n",
-      dimensions, dimensions == 2 ? "[0, 0]" : "[0, 0, 0]", spacing, diffusivity, box(dimensions, width, 0, spacing),
+      dimensions, vector(dimensions, 0, 0), spacing, diffusivity, box(dimensions, width, 0, spacing),
       ratio * diffusivity, velocity, box(dimensions, width, spacing, height), velocity,
       box(dimensions, width, 0, 1.5 * height), numerics);
 }
-
-template <int Dim> const char* sideways() { return Dim == 2 ? "[0.5, 0.2]" : "[0.5, 0.2, 0.3]"; }
-template <int Dim> const char* at_rest() { return Dim == 2 ? "[0, 0]" : "[0, 0, 0]"; }
 
 template <class F> class InsulatedTank : public ::testing::Test {
  protected:
@@ -59,7 +61,7 @@ TYPED_TEST(InsulatedTank, KeepsItsHeat) {
   double worst = 0;
   for (const char* numerics : {"", "gradient_correction = true\nshifting = true", "integrator = \"runge_kutta_4\""})
     for (const double ratio : {1.0, 0.1}) {
-      auto s = state_from<Dim, Real>(tank(Dim, ratio, sideways<Dim>(), numerics));
+      auto s = state_from<Dim, Real>(tank(Dim, ratio, vector(Dim, 0.5, 0.2, 0.3), numerics));
       const double before = diagnose(s).heat;
       for (int k = 0; k < 150; ++k) step(s);
       const double drift = std::abs(diagnose(s).heat / before - 1);
@@ -72,7 +74,7 @@ TYPED_TEST(InsulatedTank, KeepsItsHeat) {
 
 TYPED_TEST(InsulatedTank, KeepsItsHeatAtRest) {
   MOLTEN_FLAVOUR;
-  auto s = state_from<Dim, Real>(tank(Dim, 1, at_rest<Dim>(), "sleep = { after = 0.005 }"));
+  auto s = state_from<Dim, Real>(tank(Dim, 1, vector(Dim, 0, 0), "sleep = { after = 0.005 }"));
   const double before = diagnose(s).heat;
   while (s.sleep.asleep < static_cast<std::int64_t>(s.particles.count()) && s.clock.time < 0.1) step(s);
   const double warm = hottest(s);
@@ -84,26 +86,26 @@ TYPED_TEST(InsulatedTank, KeepsItsHeatAtRest) {
 
 // ---- along walls ----------------------------------------------------------------------------------------------------
 
-/// A channel along x, closed on itself, between two planes, `rows` high, or high and without walls; a wave of
-/// temperatures lies along it. What is left of it after it fell to 1/e by theory.
-template <int Dim, class Real> double left_of_wave(int rows, bool walls, const std::string& numerics) {
-  const double length = 40 * spacing, height = rows * spacing, depth = 6 * spacing;
-  const bool flat = Dim == 2;
+/// A channel along x, between two planes at the ends of y, or closed on itself there as elsewhere.
+std::string channel(int dimensions, int rows, bool walls, const std::string& numerics) {
+  const double height = rows * spacing, margin = walls ? height : 0;
+  const std::string periodic = std::string("\"x\"") + (walls ? "" : ", \"y\"") + (dimensions == 2 ? "" : ", \"z\"");
   std::string text = fmt::format(
-      "[scene]\ndimensions = {}\ngravity = {}\nperiodic = [{}{}]\ndomain = {}\n[fluid]\nspacing = {}\n{}\n"
-      "[fluid.heat]\ndiffusivity = {}\ninitial = 0\n[run]\nend_time = 10\n",
-      Dim, flat ? "[0, 0]" : "[0, 0, 0]", walls ? "\"x\"" : "\"x\", \"y\"", flat ? "" : ", \"z\"",
-      flat ? fmt::format("{{ min = [0, {0}], max = [{1}, {2}] }}", walls ? -1 : 0, length, walls ? 2 * height : height)
-           : fmt::format("{{ min = [0, {0}, 0], max = [{1}, {2}, {3}] }}", walls ? -1 : 0, length,
-                         walls ? 2 * height : height, depth),
-      spacing, box(Dim, length, 0, height), diffusivity);
-  if (walls)
-    text += fmt::format(
-        "[[boundary]]\nplane = {{ point = {0}, normal = {1} }}\n[[boundary]]\nplane = {{ point = {2}, normal = {3} "
-        "}}\n",
-        flat ? "[0, 0]" : "[0, 0, 0]", flat ? "[0, 1]" : "[0, 1, 0]",
-        fmt::format(flat ? "[0, {}]" : "[0, {}, 0]", height), flat ? "[0, -1]" : "[0, -1, 0]");
-  text += "[numerics]\npreset = \"basic\"\nsound_speed = 1\n" + numerics + (walls ? "\nwall_support = true\n" : "\n");
+      "[scene]\ndimensions = {}\ngravity = {}\nperiodic = [{}]\ndomain = {{ min = {}, max = {} }}\n[fluid]\n"
+      "spacing = {}\n{}\n[fluid.heat]\ndiffusivity = {}\ninitial = 0\n[run]\nend_time = 10\n",
+      dimensions, vector(dimensions, 0, 0), periodic, vector(dimensions, 0, -margin),
+      vector(dimensions, length, height + margin, depth), spacing, box(dimensions, length, 0, height), diffusivity);
+  const auto add_plane = [&](double y, double up) {
+    text += fmt::format("[[boundary]]\nplane = {{ point = {}, normal = {} }}\n", vector(dimensions, 0, y),
+                        vector(dimensions, 0, up));
+  };
+  if (walls) add_plane(0, 1), add_plane(height, -1);
+  return text + "[numerics]\npreset = \"basic\"\nsound_speed = 1\n" + numerics +
+         (walls ? "\nwall_support = true\n" : "\n");
+}
+
+/// What is left of a wave of temperatures along a channel when theory has it at 1/e.
+template <int Dim, class Real> double left_of_wave(const std::string& text) {
   const Scene scene = parse_scene(text, "s.toml");
   Start start = fill_bodies(scene, features_of(scene));
   const double wave_number = 2 * std::numbers::pi / length;
@@ -120,8 +122,8 @@ template <int Dim, class Real> double left_of_wave(int rows, bool walls, const s
 TYPED_TEST(InsulatedTank, ConductsAlongItsWallsAsFarFromThem) {
   MOLTEN_FLAVOUR;
   for (const char* numerics : {"", "gradient_correction = true"}) {
-    const double far = std::log(left_of_wave<Dim, Real>(6, false, numerics));
-    const double beside = std::log(left_of_wave<Dim, Real>(4, true, numerics));
+    const double far = std::log(left_of_wave<Dim, Real>(channel(Dim, 6, false, numerics)));
+    const double beside = std::log(left_of_wave<Dim, Real>(channel(Dim, 4, true, numerics)));
     this->RecordProperty(*numerics ? "corrected" : "plain", fmt::format("{:.4f}", beside / far));
     EXPECT_NEAR(beside / far, 1, 0.02) << numerics << "; a ninth less without what walls hide";
     EXPECT_NEAR(far, -1, 0.03);
