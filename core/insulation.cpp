@@ -8,21 +8,19 @@ namespace molten {
 
 namespace {
 
-template <int Dim> bool insulates(const WallSupport<Dim>& walls, std::int32_t wall) {
-  return !walls.wall(wall).skin.temperature;
-}
-
-template <int Dim> double hidden_by_insulators(const WallSupport<Dim>& walls, std::size_t slot, const Point<Dim>& x) {
+template <int Dim>
+HiddenFromHeat hidden_from_heat(const WallSupport<Dim>& walls, std::size_t slot, const Point<Dim>& x) {
+  HiddenFromHeat hidden;
+  const auto add = [&](std::int32_t wall, double part) {
+    (walls.wall(wall).skin.temperature ? hidden.heated : hidden.insulated) += part;
+  };
   const std::int32_t number = walls.plane(slot / cluster_size);
-  if (number == WallSupport<Dim>::no_plane) return 0;
-  if (number != WallSupport<Dim>::many_planes) {
+  if (number == WallSupport<Dim>::many_planes) {
+    walls.visit(slot, x, [&](const WallPatch<Dim>& patch) { add(patch.wall, patch.hidden); });
+  } else if (number != WallSupport<Dim>::no_plane) {
     const auto& [normal, offset, wall] = walls.integrals().plane(number);
-    return insulates(walls, wall) ? walls.integrals().of_plane(normal.dot(x) - offset).hidden : 0;
+    add(wall, walls.integrals().of_plane(normal.dot(x) - offset).hidden);
   }
-  double hidden = 0;
-  walls.visit(slot, x, [&](const WallPatch<Dim>& patch) {
-    if (insulates(walls, patch.wall)) hidden += patch.hidden;
-  });
   return hidden;
 }
 
@@ -37,8 +35,8 @@ template <int Dim, class Real> void find_heat_completions(State<Dim, Real>& s) {
     const std::size_t slot = first + k;
     Point<Dim> at;
     for (int d = 0; d < Dim; ++d) at[d] = x[d][slot];
-    const double hidden = s.particles.is_padding(slot) ? 0 : hidden_by_insulators(s.wall_support, slot, at);
-    factor[slot] = static_cast<Real>(heat_completion_at(hidden));
+    const bool there = !s.particles.is_padding(slot);
+    factor[slot] = there ? static_cast<Real>(heat_completion_at(hidden_from_heat(s.wall_support, slot, at))) : Real(1);
   });
 }
 

@@ -37,6 +37,7 @@ template <int Dim, class L> struct WallNeighbour {
   Vec<Dim, L> pull;              // by the hydrostatic part of p_s, m/s²
   SymTensor<Dim, L> moment;      // of ∫_s n ⊗ W y dS, the symmetric part
   L reach, weight, hidden;       // m, 1/m, 1; reach: of the neighbour, straight along the normal
+  L height;                      // m, that its temperature is off
 };
 
 template <int Dim, class Real>
@@ -52,6 +53,9 @@ WallNeighbour<Dim, Lanes<Real, 1>> neighbour_of(const WallPatch<Dim>& patch, con
     for (int m = k; m < Dim; ++m) n.moment(k, m) = L(static_cast<Real>((patch.moment(k, m) + patch.moment(m, k)) / 2));
   }
   n.reach = L(static_cast<Real>(aside * aside / std::max(patch.distance, 0.1 * aside)));
+  // Its temperature is the same all over its plane, so what heat goes by is the height over that; but not where the
+  // plane passes close by and the piece is aside.
+  n.height = L(static_cast<Real>(std::max(patch.distance, 0.5 * aside)));
   n.weight = L(static_cast<Real>(patch.weight));
   n.hidden = L(static_cast<Real>(patch.hidden));
   return n;
@@ -137,6 +141,7 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
       set_lane(n.hidden, k, static_cast<Real>(beyond.hidden));
       set_lane(n.reach, k, static_cast<Real>(beyond.weight > 0 ? distance : 1));
     });
+    n.height = n.reach;
     const L moment = n.reach * n.weight;
     const L pull = L(static_cast<Real>(-gravity_.dot(normal))) * (moment + n.hidden);
     const L centre = L(Real(-0.5)) * moment;  // along the normal
@@ -287,11 +292,16 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
   L at_wall(LocalTemperature, const Neighbour<L>& n, const Wall<Dim>& wall, const Own& i) const {
     const WallSkin<Dim>& skin = wall.skin;
     if (!skin.temperature) return i[local_temperature];
+    // The terms take a slope over `reach`.
+    const L temperature = temperature_of(skin, n, i);
+    return i[local_temperature] + n.reach / n.height * (temperature - i[local_temperature]);
+  }
+  template <class L, class Own> L temperature_of(const WallSkin<Dim>& skin, const Neighbour<L>& n, const Own& i) const {
     const L there(static_cast<Real>(*skin.temperature - parameters_.reference_temperature));
     if (skin.layer_diffusivity <= 0) return there;
-    // The flux through the layer is that through the fluid: k (T_i − T)/reach = k_l (T − T_behind)/thickness.
+    // The flux through the layer is that through the fluid: k (T_i − T)/height = k_l (T − T_behind)/thickness.
     const L layer(static_cast<Real>(skin.layer_diffusivity / skin.layer_thickness));
-    L own = L(static_cast<Real>(parameters_.diffusivity)) / n.reach;
+    L own = L(static_cast<Real>(parameters_.diffusivity)) / n.height;
     if constexpr (is_among<InterfaceResistance, Reads>)
       if (particles_.has(conductivity))
         own = own * series_conductivity<Real>(i[interface_distance], i[interface_resistance]);

@@ -4,9 +4,12 @@
 // neighbourhoods would conduct, and what i takes j gives. (f_i in its place, as Ferrand et al. 2013 have it, loses a
 // fifth of the heat of a row at a wall while that spreads.) Walls with a temperature, also behind a layer, hide
 // nothing: their own flux makes the sum exact for linear temperatures, which factors beside them would spoil.
+// Where one that hides g meets them, f² = (1 − g)/((1 − h)(1 − h − g)): at a right angle that is what f is far from the
+// corner, as each wall's part of the solid there, a cone, lacks half of what both hide.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include "core/fields.h"
@@ -16,8 +19,17 @@ namespace molten {
 /// The most that may be hidden, as in a cleft that hardly leaves room to the fluid.
 inline constexpr double most_hidden = 0.9;
 
+/// Parts of ∫ W dV.
+struct HiddenFromHeat {
+  double insulated = 0;  // behind walls without a temperature
+  double heated = 0;     // behind the others
+};
+
 /// f of one particle.
-inline double heat_completion_at(double hidden) { return 1 / (1 - std::clamp(hidden, 0.0, most_hidden)); }
+inline double heat_completion_at(const HiddenFromHeat& hidden) {
+  const double h = std::clamp(hidden.insulated, 0.0, most_hidden), g = std::clamp(hidden.heated, 0.0, most_hidden - h);
+  return std::sqrt((1 - g) / ((1 - h) * (1 - h - g)));
+}
 
 /// (f_i + f_j)/2
 template <class I, class J> [[gnu::always_inline]] inline auto heat_completion_of(const I& i, const J& j) {

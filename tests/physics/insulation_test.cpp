@@ -130,5 +130,44 @@ TYPED_TEST(InsulatedTank, ConductsAlongItsWallsAsFarFromThem) {
   }
 }
 
+// ---- corners of insulating walls and of ones with a temperature -----------------------------------------------------
+
+/// A bar along x in a box of walls: its ends, at 0 and 100, are planes, its sides insulate.
+std::string bar(int dimensions, int cells, double smoothing_ratio) {
+  const double end = cells * spacing, high = 4 * spacing;
+  std::string text = fmt::format(
+      "[scene]\ndimensions = {}\ngravity = {}\n[fluid]\nspacing = {}\nbox = {{ min = {}, max = {} }}\n[fluid.heat]\n"
+      "diffusivity = 1\ninitial = 30\n[run]\nend_time = 10\n[numerics]\npreset = \"basic\"\nwall_support = true\n"
+      "sound_speed = 20\nsmoothing_ratio = {}\n",
+      dimensions, vector(dimensions, 0, 0), spacing, vector(dimensions, 0, 0), vector(dimensions, end, high, high),
+      smoothing_ratio);
+  const auto add_plane = [&](const std::string& point, const std::string& normal, const std::string& more) {
+    text += fmt::format("[[boundary]]\nplane = {{ point = {}, normal = {} }}\n{}\n", point, normal, more);
+  };
+  add_plane(vector(dimensions, 0, 0), vector(dimensions, 1, 0), "temperature = 0");
+  add_plane(vector(dimensions, end, 0), vector(dimensions, -1, 0), "temperature = 100");
+  add_plane(vector(dimensions, 0, 0), vector(dimensions, 0, 1), "");
+  add_plane(vector(dimensions, 0, high), vector(dimensions, 0, -1), "");
+  if (dimensions == 3) add_plane(vector(3, 0, 0), vector(3, 0, 0, 1), "");
+  if (dimensions == 3) add_plane(vector(3, 0, 0, high), vector(3, 0, 0, -1), "");
+  return text;
+}
+
+TYPED_TEST(InsulatedTank, HoldsALinearProfileUpToTheCorners) {
+  MOLTEN_FLAVOUR;
+  constexpr int cells = 12;
+  for (const double smoothing_ratio : {1.3, 2.0}) {
+    auto s = state_from<Dim, Real>(bar(Dim, cells, smoothing_ratio));
+    run_until(s, std::pow(cells * spacing, 2));
+    double furthest = 0;  // in the difference from one particle to the next
+    for_each_particle(s, [&](std::size_t slot) {
+      const double exact = 100 * s.particles[position][0][slot] / (cells * spacing);
+      furthest = std::max(furthest, std::abs(s.particles[temperature][0][slot] - exact) / 100 * cells);
+    });
+    this->RecordProperty(smoothing_ratio < 2 ? "narrow" : "wide", fmt::format("{:.3g}", furthest));
+    EXPECT_LT(furthest, 0.07) << smoothing_ratio << "; 0.1 to 0.6 by the distance of a piece, aside";
+  }
+}
+
 }  // namespace
 }  // namespace molten::insulation_test
