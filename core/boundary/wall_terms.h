@@ -305,6 +305,8 @@ template <int Dim, class Real, class Finish, class... Terms> class WithWalls {
     if constexpr (is_among<InterfaceResistance, Reads>)
       if (particles_.has(conductivity))
         own = own * series_conductivity<Real>(i[interface_distance], i[interface_resistance]);
+    // The term multiplies its fluxes by this; the layer's is right without.
+    if constexpr (is_among<LaplacianCorrection, Reads>) own = own * i[laplacian_correction];
     return (own * i[local_temperature] + layer * there) / (own + layer);
   }
 

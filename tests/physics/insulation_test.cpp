@@ -23,6 +23,10 @@ std::string vector(int dimensions, double x, double y, double z = 0) {
 
 constexpr double depth = 6 * spacing;  // in 3-D
 
+std::string plane(const std::string& point, const std::string& normal, const std::string& more = "") {
+  return fmt::format("[[boundary]]\nplane = {{ point = {}, normal = {} }}\n{}\n", point, normal, more);
+}
+
 std::string box(int dimensions, double width, double bottom, double top) {
   return fmt::format("box = {{ min = {}, max = {} }}", vector(dimensions, 0, bottom),
                      vector(dimensions, width, top, depth));
@@ -95,11 +99,9 @@ std::string channel(int dimensions, int rows, bool walls, const std::string& num
       "spacing = {}\n{}\n[fluid.heat]\ndiffusivity = {}\ninitial = 0\n[run]\nend_time = 10\n",
       dimensions, vector(dimensions, 0, 0), periodic, vector(dimensions, 0, -margin),
       vector(dimensions, length, height + margin, depth), spacing, box(dimensions, length, 0, height), diffusivity);
-  const auto add_plane = [&](double y, double up) {
-    text += fmt::format("[[boundary]]\nplane = {{ point = {}, normal = {} }}\n", vector(dimensions, 0, y),
-                        vector(dimensions, 0, up));
-  };
-  if (walls) add_plane(0, 1), add_plane(height, -1);
+  if (walls)
+    text += plane(vector(dimensions, 0, 0), vector(dimensions, 0, 1)) +
+            plane(vector(dimensions, 0, height), vector(dimensions, 0, -1));
   return text + "[numerics]\npreset = \"basic\"\nsound_speed = 1\n" + numerics +
          (walls ? "\nwall_support = true\n" : "\n");
 }
@@ -130,6 +132,40 @@ TYPED_TEST(InsulatedTank, ConductsAlongItsWallsAsFarFromThem) {
   }
 }
 
+// ---- through layers -------------------------------------------------------------------------------------------------
+
+/// A slab on a cold wall behind a layer that lets through a hundredth of what the slab could; its other sides insulate.
+std::string slab_on_layer(int dimensions, int rows, const std::string& numerics) {
+  const double width = 6 * spacing, height = rows * spacing, layer = 0.1 * height;
+  std::string text = fmt::format(
+      "[scene]\ndimensions = {}\ngravity = {}\n[fluid]\nspacing = {}\n{}\n[fluid.heat]\ndiffusivity = {}\n"
+      "initial = 100\n[run]\nend_time = 10\n[numerics]\npreset = \"basic\"\nwall_support = true\nsound_speed = 1\n{}\n",
+      dimensions, vector(dimensions, 0, 0), spacing, box(dimensions, width, 0, height), diffusivity, numerics);
+  text += plane(
+      vector(dimensions, 0, 0), vector(dimensions, 0, 1),
+      fmt::format("temperature = 0\nground = {{ diffusivity = {}, thickness = {} }}", 0.001 * diffusivity, layer));
+  text += plane(vector(dimensions, 0, height), vector(dimensions, 0, -1));
+  text += plane(vector(dimensions, 0, 0), vector(dimensions, 1, 0));
+  text += plane(vector(dimensions, width, 0), vector(dimensions, -1, 0));
+  if (dimensions == 3) text += plane(vector(3, 0, 0), vector(3, 0, 0, 1));
+  if (dimensions == 3) text += plane(vector(3, 0, 0, depth), vector(3, 0, 0, -1));
+  return text;
+}
+
+TYPED_TEST(InsulatedTank, CoolsThroughALayerAsItShould) {
+  MOLTEN_FLAVOUR;
+  constexpr int rows = 8;
+  for (const char* numerics : {"", "gradient_correction = true", "smoothing_ratio = 2"}) {
+    auto s = state_from<Dim, Real>(slab_on_layer(Dim, rows, numerics));
+    const double before = diagnose(s).heat, time = 5 * std::pow(rows * spacing, 2) / diffusivity;
+    run_until(s, time);
+    // The lowest wave's decay, μ² with μ tan μ = Bi = 0.01; in units of the height and its time.
+    const double mu2 = 0.01 * (1 - 0.01 / 3), rate = std::log(before / diagnose(s).heat) / 5;
+    this->RecordProperty(*numerics ? std::string(numerics).substr(0, 9) : "plain", fmt::format("{:.4f}", rate / mu2));
+    EXPECT_NEAR(rate / mu2, 1, 0.012) << numerics;
+  }
+}
+
 // ---- corners of insulating walls and of ones with a temperature -----------------------------------------------------
 
 /// A bar along x in a box of walls: its ends, at 0 and 100, are planes, its sides insulate.
@@ -141,15 +177,12 @@ std::string bar(int dimensions, int cells, double smoothing_ratio) {
       "sound_speed = 20\nsmoothing_ratio = {}\n",
       dimensions, vector(dimensions, 0, 0), spacing, vector(dimensions, 0, 0), vector(dimensions, end, high, high),
       smoothing_ratio);
-  const auto add_plane = [&](const std::string& point, const std::string& normal, const std::string& more) {
-    text += fmt::format("[[boundary]]\nplane = {{ point = {}, normal = {} }}\n{}\n", point, normal, more);
-  };
-  add_plane(vector(dimensions, 0, 0), vector(dimensions, 1, 0), "temperature = 0");
-  add_plane(vector(dimensions, end, 0), vector(dimensions, -1, 0), "temperature = 100");
-  add_plane(vector(dimensions, 0, 0), vector(dimensions, 0, 1), "");
-  add_plane(vector(dimensions, 0, high), vector(dimensions, 0, -1), "");
-  if (dimensions == 3) add_plane(vector(3, 0, 0), vector(3, 0, 0, 1), "");
-  if (dimensions == 3) add_plane(vector(3, 0, 0, high), vector(3, 0, 0, -1), "");
+  text += plane(vector(dimensions, 0, 0), vector(dimensions, 1, 0), "temperature = 0");
+  text += plane(vector(dimensions, end, 0), vector(dimensions, -1, 0), "temperature = 100");
+  text += plane(vector(dimensions, 0, 0), vector(dimensions, 0, 1));
+  text += plane(vector(dimensions, 0, high), vector(dimensions, 0, -1));
+  if (dimensions == 3) text += plane(vector(3, 0, 0), vector(3, 0, 0, 1));
+  if (dimensions == 3) text += plane(vector(3, 0, 0, high), vector(3, 0, 0, -1));
   return text;
 }
 
