@@ -1,6 +1,8 @@
 // What `molten check` says of meshes and vents.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/program.h"
 
 namespace molten::check_test {
@@ -146,7 +148,8 @@ std::string partitioned(int dimensions, double thickness, bool both) {
   };
   std::string text = fmt::format("[scene]\ndimensions = {}\n[fluid]\nspacing = 0.1\n[[fluid.body]]\n", dimensions);
   text += box(0, 0.5, 0, 0.5);
-  if (both) text += "[[fluid.body]]\n" + box(0.5 + thickness, 1 + thickness, 0, 0.5);
+  const double next = std::ceil(10 * thickness - 1e-9) / 10;  // of the lattice
+  if (both) text += "[[fluid.body]]\n" + box(0.5 + next, 1 + next, 0, 0.5);
   return text + "[[boundary]]\n" + box(0.5, 0.5 + thickness, -0.5, 3) + "[run]\nend_time = 0.001\n";
 }
 
@@ -155,6 +158,8 @@ TEST_F(WarningTest, AWallThatFluidSeesThrough) {
     const std::string said = warning(partitioned(dimensions, 0.1, true));
     EXPECT_TRUE(contains(said, "boundary.0: is 0.1 m thick at (0.")) << said;
     EXPECT_TRUE(contains(said, "less than the 0.26 m that particles see")) << said;
+    EXPECT_TRUE(contains(warning(partitioned(dimensions, 0.15, true)), "is 0.15 m thick"))
+        << "0.3 m from each other, but not for long";
     EXPECT_EQ(warning(partitioned(dimensions, 0.1, false)), "") << "nothing behind it";
     EXPECT_EQ(warning(partitioned(dimensions, 0.2, true)), "") << "the nearest are 0.3 m from each other";
   }

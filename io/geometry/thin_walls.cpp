@@ -75,32 +75,39 @@ template <int Dim> std::vector<ThinPart<Dim>> thin_parts(const Wall<Dim>& wall, 
   return parts;
 }
 
-/// Whether particles on the two sides of a place on a part are within reach of each other.
+/// How far particles see, and how far from each other two of them can come to rest, half of it from a wall (m).
+struct Sight {
+  double reach, spacing;
+};
+
+/// Whether particles on the two sides of a place on a part are within reach of each other, or will be once they rest
+/// against the wall.
 template <int Dim>
-bool sees_through(const ThinPart<Dim>& part, const Point<Dim>& place, const Bins<Dim>& fluid, double reach) {
+bool sees_through(const ThinPart<Dim>& part, const Point<Dim>& place, const Bins<Dim>& fluid, const Sight& sight) {
   double before = HUGE_VAL, behind = HUGE_VAL;
   fluid.around(place, [&](const Point<Dim>& x) {
     const double height = (x - place).dot(part.normal);
-    if ((x - place - height * part.normal).norm() > reach / 4) return;
+    if ((x - place - height * part.normal).norm() > sight.reach / 4) return;
     if (height > 0) before = std::min(before, height);
     if (height < -part.thickness) behind = std::min(behind, -height);
   });
-  return before + behind < reach;
+  const bool both = before < HUGE_VAL && behind < HUGE_VAL;
+  return both && std::min(before + behind, part.thickness + sight.spacing) < sight.reach;
 }
 
 /// Where it does: looked for at places half a reach apart, or at most 32 along an edge.
 template <int Dim>
-std::optional<Point<Dim>> where_seen_through(const ThinPart<Dim>& part, const Bins<Dim>& fluid, double reach) {
+std::optional<Point<Dim>> where_seen_through(const ThinPart<Dim>& part, const Bins<Dim>& fluid, const Sight& sight) {
   const auto& c = part.corner;
   double longest = 0;
   for (int k = 0; k < Dim; ++k) longest = std::max(longest, (c[k] - c[(k + 1) % Dim]).norm());
-  const int n = std::clamp(static_cast<int>(2 * longest / reach) + 1, 1, 32);
+  const int n = std::clamp(static_cast<int>(2 * longest / sight.reach) + 1, 1, 32);
   for (int a = 0; a < n; ++a)
     for (int b = 0; b < (Dim == 3 ? n - a : 1); ++b) {
       const double u = (a + 0.5) / n, v = Dim == 3 ? (b + 0.5) / n : 0;
       Point<Dim> place = c[0] + u * (c[1] - c[0]);
       if constexpr (Dim == 3) place += v * (1 - u) * (c[2] - c[0]);
-      if (sees_through(part, place, fluid, reach)) return place;
+      if (sees_through(part, place, fluid, sight)) return place;
     }
   return std::nullopt;
 }
@@ -128,7 +135,7 @@ void find_thin_walls(const Start& start, const std::vector<Wall<Dim>>& walls, do
     if (parts.empty()) continue;
     const Bins<Dim> fluid = fluid_beside(parts, start, reach);
     for (const auto& part : parts) {
-      const auto place = where_seen_through(part, fluid, reach);
+      const auto place = where_seen_through(part, fluid, Sight{reach, start.spacing});
       if (!place) continue;
       found.push_back(fmt::format(
           "boundary.{}: is {:.3g} m thick at {}, less than the {:.3g} m that particles see, and has fluid on both "
