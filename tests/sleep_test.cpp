@@ -1,6 +1,7 @@
 // Sleep: who falls asleep and who wakes, that it takes no more than it states, repeats and survives a restart.
 #include "core/sleep.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <map>
