@@ -134,32 +134,42 @@ TYPED_TEST(InsulatedTank, ConductsAlongItsWallsAsFarFromThem) {
 
 // ---- through layers -------------------------------------------------------------------------------------------------
 
-/// A slab on a cold wall behind a layer that lets through a hundredth of what the slab could; its other sides insulate.
-std::string slab_on_layer(int dimensions, int rows, const std::string& numerics) {
-  const double width = 6 * spacing, height = rows * spacing, layer = 0.1 * height;
-  std::string text = fmt::format(
-      "[scene]\ndimensions = {}\ngravity = {}\n[fluid]\nspacing = {}\n{}\n[fluid.heat]\ndiffusivity = {}\n"
-      "initial = 100\n[run]\nend_time = 10\n[numerics]\npreset = \"basic\"\nwall_support = true\nsound_speed = 1\n{}\n",
-      dimensions, vector(dimensions, 0, 0), spacing, box(dimensions, width, 0, height), diffusivity, numerics);
-  text += plane(
-      vector(dimensions, 0, 0), vector(dimensions, 0, 1),
-      fmt::format("temperature = 0\nground = {{ diffusivity = {}, thickness = {} }}", 0.001 * diffusivity, layer));
-  text += plane(vector(dimensions, 0, height), vector(dimensions, 0, -1));
-  text += plane(vector(dimensions, 0, 0), vector(dimensions, 1, 0));
-  text += plane(vector(dimensions, width, 0), vector(dimensions, -1, 0));
-  if (dimensions == 3) text += plane(vector(3, 0, 0), vector(3, 0, 0, 1));
-  if (dimensions == 3) text += plane(vector(3, 0, 0, depth), vector(3, 0, 0, -1));
-  return text;
+/// A bar along x between planes: its ends with these keys, its sides insulating.
+struct Bar {
+  double length, across;       // m
+  std::string heat, numerics;  // keys
+  std::string left = "", right = "";
+
+  std::string scene(int dimensions) const {
+    const auto at = [&](double x, double y, double z = 0) { return vector(dimensions, x, y, z); };
+    std::string text = fmt::format(
+        "[scene]\ndimensions = {}\ngravity = {}\n[fluid]\nspacing = {}\nbox = {{ min = {}, max = {} }}\n[fluid.heat]\n"
+        "{}\n[run]\nend_time = 10\n[numerics]\npreset = \"basic\"\nwall_support = true\n{}\n",
+        dimensions, at(0, 0), spacing, at(0, 0), at(length, across, across), heat, numerics);
+    text += plane(at(0, 0), at(1, 0), left) + plane(at(length, 0), at(-1, 0), right);
+    text += plane(at(0, 0), at(0, 1)) + plane(at(0, across), at(0, -1));
+    if (dimensions == 3) text += plane(at(0, 0), at(0, 0, 1)) + plane(at(0, 0, across), at(0, 0, -1));
+    return text;
+  }
+};
+
+/// Behind a layer that lets through a hundredth of what the bar could.
+Bar bar_on_layer(int cells, const std::string& numerics) {
+  Bar bar{cells * spacing, 6 * spacing, fmt::format("diffusivity = {}\ninitial = 100", diffusivity),
+          "sound_speed = 1\n" + numerics};
+  bar.left = fmt::format("temperature = 0\nground = {{ diffusivity = {}, thickness = {} }}", 0.001 * diffusivity,
+                         0.1 * bar.length);
+  return bar;
 }
 
 TYPED_TEST(InsulatedTank, CoolsThroughALayerAsItShould) {
   MOLTEN_FLAVOUR;
-  constexpr int rows = 8;
+  constexpr int cells = 8;
   for (const char* numerics : {"", "gradient_correction = true", "smoothing_ratio = 2"}) {
-    auto s = state_from<Dim, Real>(slab_on_layer(Dim, rows, numerics));
-    const double before = diagnose(s).heat, time = 5 * std::pow(rows * spacing, 2) / diffusivity;
+    auto s = state_from<Dim, Real>(bar_on_layer(cells, numerics).scene(Dim));
+    const double before = diagnose(s).heat, time = 5 * std::pow(cells * spacing, 2) / diffusivity;
     run_until(s, time);
-    // The lowest wave's decay, μ² with μ tan μ = Bi = 0.01; in units of the height and its time.
+    // The lowest wave's decay, μ² with μ tan μ = Bi = 0.01; in units of the length and its time.
     const double mu2 = 0.01 * (1 - 0.01 / 3), rate = std::log(before / diagnose(s).heat) / 5;
     this->RecordProperty(*numerics ? std::string(numerics).substr(0, 9) : "plain", fmt::format("{:.4f}", rate / mu2));
     EXPECT_NEAR(rate / mu2, 1, 0.012) << numerics;
@@ -168,29 +178,17 @@ TYPED_TEST(InsulatedTank, CoolsThroughALayerAsItShould) {
 
 // ---- corners of insulating walls and of ones with a temperature -----------------------------------------------------
 
-/// A bar along x in a box of walls: its ends, at 0 and 100, are planes, its sides insulate.
-std::string bar(int dimensions, int cells, double smoothing_ratio) {
-  const double end = cells * spacing, high = 4 * spacing;
-  std::string text = fmt::format(
-      "[scene]\ndimensions = {}\ngravity = {}\n[fluid]\nspacing = {}\nbox = {{ min = {}, max = {} }}\n[fluid.heat]\n"
-      "diffusivity = 1\ninitial = 30\n[run]\nend_time = 10\n[numerics]\npreset = \"basic\"\nwall_support = true\n"
-      "sound_speed = 20\nsmoothing_ratio = {}\n",
-      dimensions, vector(dimensions, 0, 0), spacing, vector(dimensions, 0, 0), vector(dimensions, end, high, high),
-      smoothing_ratio);
-  text += plane(vector(dimensions, 0, 0), vector(dimensions, 1, 0), "temperature = 0");
-  text += plane(vector(dimensions, end, 0), vector(dimensions, -1, 0), "temperature = 100");
-  text += plane(vector(dimensions, 0, 0), vector(dimensions, 0, 1));
-  text += plane(vector(dimensions, 0, high), vector(dimensions, 0, -1));
-  if (dimensions == 3) text += plane(vector(3, 0, 0), vector(3, 0, 0, 1));
-  if (dimensions == 3) text += plane(vector(3, 0, 0, high), vector(3, 0, 0, -1));
-  return text;
-}
-
 TYPED_TEST(InsulatedTank, HoldsALinearProfileUpToTheCorners) {
   MOLTEN_FLAVOUR;
   constexpr int cells = 12;
   for (const double smoothing_ratio : {1.3, 2.0}) {
-    auto s = state_from<Dim, Real>(bar(Dim, cells, smoothing_ratio));
+    const Bar bar{cells * spacing,
+                  4 * spacing,
+                  "diffusivity = 1\ninitial = 30",
+                  fmt::format("sound_speed = 20\nsmoothing_ratio = {}", smoothing_ratio),
+                  "temperature = 0",
+                  "temperature = 100"};
+    auto s = state_from<Dim, Real>(bar.scene(Dim));
     run_until(s, std::pow(cells * spacing, 2));
     double furthest = 0;  // in the difference from one particle to the next
     for_each_particle(s, [&](std::size_t slot) {
