@@ -82,7 +82,8 @@ TYPED_TEST(InsulatedTank, KeepsItsHeatAtRest) {
   const double before = diagnose(s).heat;
   while (s.sleep.asleep < static_cast<std::int64_t>(s.particles.count()) && s.clock.time < 0.1) step(s);
   const double warm = hottest(s);
-  EXPECT_GT(s.sleep.warm, 0);
+  ASSERT_EQ(s.sleep.asleep, static_cast<std::int64_t>(s.particles.count()));
+  ASSERT_GT(s.sleep.warm, 0);
   run_until(s, s.clock.time + 0.1);
   EXPECT_LT(hottest(s), 0.9 * warm) << "or nothing flowed";
   EXPECT_NEAR(diagnose(s).heat / before, 1, 1e-4);
