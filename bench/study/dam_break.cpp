@@ -48,12 +48,12 @@ std::string gate_text(double left, double top, double spacing, double speed) {
       spacing / 10, left + 2 * spacing, top, speed);
 }
 
-double front_of(const Cloud& cloud) {
+double front_of(const Cloud& cloud, std::ptrdiff_t farthest) {
   std::vector<double> x;
   for (const Triple& place : cloud.position) x.push_back(place[0]);
-  const auto fifth = x.begin() + std::min<std::ptrdiff_t>(4, std::ssize(x) - 1);
-  std::nth_element(x.begin(), fifth, x.end(), std::greater<>());
-  return *fifth + cloud.spacing / 2;
+  const auto front = x.begin() + std::min(farthest, std::ssize(x)) - 1;
+  std::nth_element(x.begin(), front, x.end(), std::greater<>());
+  return *front + cloud.spacing / 2;
 }
 
 void expect_series(Report& report, const std::string& name, double raw_reach, double shifted_reach) {

@@ -1,6 +1,8 @@
 // Columns of water that collapse in a tank, in 2-D and 3-D; the column stands against the wall at x = 0.
 #pragma once
 
+#include <cstddef>
+
 #include "bench/study/metrics.h"
 #include "bench/study/simulation.h"
 
@@ -28,8 +30,9 @@ Parameter perturbation_parameter();
 /// A gate whose face towards the column is at `left` (m), from the floor to `top` (m), in 2-D.
 std::string gate_text(double left, double top, double spacing, double speed);
 
-/// The front (m from the closed wall): the fifth-farthest particle's far side, so that a few drops don't count.
-double front_of(const Cloud& cloud);
+/// The front (m from the closed wall): the far side of the fifth-farthest particle, so that a few drops don't count, or
+/// of another one.
+double front_of(const Cloud& cloud, std::ptrdiff_t farthest = 5);
 
 /// Judges a series against an experiment: relative rms raw, `NAME_raw`, and after the best shift in time,
 /// `NAME_shifted`, and that shift over the experiment's duration, `NAME_time_shift`.
