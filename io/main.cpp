@@ -21,6 +21,10 @@ constexpr int most_threads = 4096;
 const CLI::Validator not_empty([](const std::string& text) { return text.empty() ? "is empty; leave it out" : ""; },
                                "");
 
+/// For what is required; an empty name is most often a shell variable that is not set.
+const CLI::Validator some_name(
+    [](const std::string& text) { return text.empty() ? "is empty; name a file or folder" : ""; }, "");
+
 /// One subcommand: its options and what it does.
 struct Commands {
   std::string scene, other;
@@ -34,7 +38,7 @@ struct Commands {
 void add_run(CLI::App& app, Commands& c) {
   CLI::App* run =
       app.add_subcommand("run", "Run a scene\n  molten run scenes/bunny.toml -o runs/bunny --set run.end_time=0.1");
-  run->add_option("scene", c.scene, "Scene file (TOML; docs/scenes.md)")->required();
+  run->add_option("scene", c.scene, "Scene file (TOML; docs/scenes.md)")->required()->check(some_name);
   run->add_option("-o,--output", c.run.folder, "Folder of the run (default: runs/<name of the scene>)")
       ->check(not_empty);
   run->add_option("--threads", c.run.threads, "Threads (default: OMP_NUM_THREADS or all cores)")
@@ -54,7 +58,7 @@ void add_run(CLI::App& app, Commands& c) {
 void add_resume(CLI::App& app, Commands& c) {
   CLI::App* resume = app.add_subcommand(
       "resume", "Go on from a run's newest checkpoint\n  molten resume runs/bunny --set run.end_time=0.8");
-  resume->add_option("run", c.resume.folder, "Folder of the run")->required();
+  resume->add_option("run", c.resume.folder, "Folder of the run")->required()->check(some_name);
   resume->add_option("--threads", c.resume.threads, "Threads")->check(CLI::Range(1, most_threads));
   resume->add_option("--set", c.resume.overrides, "Override a key of [run] or [output]; again for each more")
       ->type_name("KEY=VALUE")
@@ -66,7 +70,7 @@ void add_resume(CLI::App& app, Commands& c) {
 void add_check(CLI::App& app, Commands& c) {
   CLI::App* check =
       app.add_subcommand("check", "Check a scene and say what a run would take\n  molten check scenes/volcano.toml");
-  check->add_option("scene", c.scene, "Scene file")->required();
+  check->add_option("scene", c.scene, "Scene file")->required()->check(some_name);
   check->add_option("--set", c.overrides, "Override a key of the scene; again for each more")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -76,7 +80,7 @@ void add_check(CLI::App& app, Commands& c) {
 void add_info(CLI::App& app, Commands& c) {
   CLI::App* info =
       app.add_subcommand("info", "Say what a run folder, frame, checkpoint or mesh holds\n  molten info runs/bunny");
-  info->add_option("file", c.scene, "Run folder, .hdf frame, .h5 checkpoint, or mesh")->required();
+  info->add_option("file", c.scene, "Run folder, .hdf frame, .h5 checkpoint, or mesh")->required()->check(some_name);
   info->callback([&] { c.chosen = [&] { return molten::show_info(c.scene); }; });
 }
 
@@ -84,7 +88,7 @@ void add_render(CLI::App& app, Commands& c) {
   CLI::App* render =
       app.add_subcommand("render", "Draw frames to PNG\n  molten render runs/bunny --frames last --field temperature");
   molten::PictureOptions& p = c.render.picture;
-  render->add_option("run", c.render.run, "Folder of the run")->required();
+  render->add_option("run", c.render.run, "Folder of the run")->required()->check(some_name);
   render->add_option("-o,--output", c.render.output, "Folder for the pictures (default: RUN/pictures)")
       ->check(not_empty);
   render->add_option("--frames", c.render.frames, "all, last, numbers 0,10,20 or a range 0:100:10")
@@ -108,8 +112,8 @@ void add_compare(CLI::App& app, Commands& c) {
       app.add_subcommand("compare",
                          "Differences between the last common frames of two runs, or between two frames\n"
                          "  molten compare runs/bunny runs/bunny-double");
-  compare->add_option("a", c.scene, "Run folder or frame")->required();
-  compare->add_option("b", c.other, "Run folder or frame")->required();
+  compare->add_option("a", c.scene, "Run folder or frame")->required()->check(some_name);
+  compare->add_option("b", c.other, "Run folder or frame")->required()->check(some_name);
   compare->callback([&] { c.chosen = [&] { return molten::compare(c.scene, c.other); }; });
 }
 
