@@ -14,7 +14,8 @@ namespace molten {
 
 namespace {
 
-template <int Dim, class Real> double largest_speed(const State<Dim, Real>& s) {
+/// U of core/physics/shifting.h, m/s
+template <int Dim, class Real> double speed_of_shifting(const State<Dim, Real>& s) {
   const auto v = s.particles[velocity];
   const double speed2 = reduce_slots(
       s.particles.slots(), 0.0,
@@ -24,10 +25,10 @@ template <int Dim, class Real> double largest_speed(const State<Dim, Real>& s) {
         largest = std::max(largest, s.particles.is_padding(slot) ? 0.0 : v2);
       },
       [](double& a, double b) { a = std::max(a, b); });
-  return std::sqrt(speed2);
+  return std::min(std::sqrt(speed2), s.parameters.eos.sound_speed / 10);
 }
 
-/// Moments → correction and shift velocity, particle by particle; `fastest` (m/s) is the largest speed.
+/// Moments → correction and shift velocity, particle by particle; `fastest` (m/s) is U.
 template <int Dim, class Real> auto correction_finish(State<Dim, Real>& s, double fastest) {
   return PlainFinish{[&p = s.parameters, to = s.particles[correction], laplacian = s.particles[laplacian_correction][0],
                       depth = s.particles[inner][0], shift = s.particles[shift_velocity],
@@ -63,7 +64,7 @@ template <int Dim, class Real> auto correction_finish(State<Dim, Real>& s, doubl
 
 template <int Dim, class Real> void find_corrections(State<Dim, Real>& s) {
   const auto scope = s.timer.scope("corrections");
-  const auto finish = correction_finish(s, s.features.shifting ? largest_speed(s) : 0);
+  const auto finish = correction_finish(s, s.features.shifting ? speed_of_shifting(s) : 0);
   const GradientMoment moments;
   const Crowding crowding{s.features.shifting};
   const auto pass = [&](const auto&... more) {

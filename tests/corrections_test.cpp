@@ -104,7 +104,7 @@ void expect_shift(const State<Dim, Real>& s, std::size_t k, double fastest, cons
 
 TYPED_TEST(CorrectionsOf, ShiftTowardsWhereParticlesAreFewButNotAtTheSurface) {
   MOLTEN_FLAVOUR;
-  const double fastest = 2;
+  const double fastest = 0.8;  // m/s; sound: 10
   const auto s = block<Dim, Real>(corrected_scene(Dim), [&](const X& x) {
     return X{x[0] > 0.5 ? fastest : 0.0, 0, 0};
   });
@@ -125,7 +125,7 @@ TYPED_TEST(CorrectionsOf, ShiftTowardsWhereParticlesAreFewButNotAtTheSurface) {
 
 TYPED_TEST(CorrectionsOf, PartCloseNeighboursAtTheSurfaceToo) {
   MOLTEN_FLAVOUR;
-  const double fastest = 2;
+  const double fastest = 0.8;  // m/s; sound: 10
   const Flow flow = [&](const X&) { return X{fastest, 0, 0}; };
   const auto s = block<Dim, Real>(corrected_scene(Dim), flow, 0.4);
   Scene uncoupled = corrected_scene(Dim);
@@ -274,6 +274,24 @@ template <int Dim, class Real> State<Dim, Real> block_in_a_corner(double smoothi
 template <int Dim, class Real> bool has_no_free_side(const State<Dim, Real>& s, const X& x) {
   const double edge = (Dim == 2 ? 16 : 9) * spacing - s.parameters.support_radius;
   return *std::max_element(x.begin(), x.begin() + Dim) < edge;
+}
+
+TYPED_TEST(CorrectionsOf, ShiftNoFasterThanForAFlowOfATenthOfTheSpeedOfSound) {
+  MOLTEN_FLAVOUR;
+  const Scene scene = corrected_scene(Dim);
+  const double sound = block<Dim, Real>(scene, [](const X&) { return X{}; }).parameters.eos.sound_speed;
+  const auto shifts = [&](double mach) {
+    const auto s = block<Dim, Real>(scene, [&](const X&) { return X{mach * sound, 0, 0}; });
+    std::vector<double> all;
+    for_each_particle(s.particles, [&](std::size_t k, const auto&) {
+      for (int d = 0; d < Dim; ++d) all.push_back(s.particles[shift_velocity][d][k]);
+    });
+    return all;
+  };
+  const auto tenth = shifts(0.1), twentieth = shifts(0.05);
+  EXPECT_EQ(shifts(2), tenth);
+  EXPECT_GT(*std::max_element(tenth.begin(), tenth.end()), 1e-3 * sound);
+  for (std::size_t k = 0; k < tenth.size(); ++k) EXPECT_NEAR(twentieth[k], tenth[k] / 2, 1e-6 * sound);
 }
 
 /// Largest |L − 1|, and the fastest shift over the largest speed, before walls.

@@ -3,7 +3,7 @@
 // at walls, corners and surfaces, are sources of particles that no pressure resists: they stream off by shifting, and
 // as much fluid streams back. In a cavity that is a part of the flow in proportion to the spacing. So
 //   dρ_i/dt += κ U/h Σ V_j W_ij (C_j ρ0 − ρ_j),  C = (2 Σ V W + tr M)/(d + 2),
-// U the largest speed, M the moment of gradient_correction.h; nothing towards a free surface.
+// U as in shifting.h, M the moment of gradient_correction.h; nothing towards a free surface.
 //
 // C is the density of the places over ρ0. Where particles lie in disorder Σ V W is too large and tr M/d is too small:
 // displacements of variance σ² along each axis change Σ_{j≠i} V f(x_ij), for ∫∇²f dV = 0, by −σ² V ∇²f(0), which is

@@ -1,10 +1,12 @@
 // Particle shifting (Lind et al. 2012; Skillen et al. 2013): particles move with v + δv,
-// δv_i = −C U h Σ V_j ∇W_ij, U the largest speed, from where they are many to where they are few. It fades towards a
-// free surface, where the sum measures the missing half (GradientCorrection::inner), and stays below U/2. There
-// neighbours nearer than 0.65 Δx, and they alone, part in its place, or particles clump: their share of the sum, with
-// the weight 1 − r²/(0.65 Δx)², lacks no half. (From 0.8 Δx on a rotating patch loses four times the energy.) What a
-// moving particle then sees of the field that it carries (arbitrary Lagrangian-Eulerian; Sun et al. 2019): dv/dt +=
-// (δv·∇)v and dρ/dt += δv·∇ρ, both with corrected gradients.
+// δv_i = −C U h Σ V_j ∇W_ij, from where they are many to where they are few. U is the largest speed, at most a tenth of
+// the speed of sound, the fastest flow that it is made for: the coupling of the density (density_coupling.h) may raise
+// speeds, and with a rate that followed them it ran away in corners of tanks. It fades towards a free surface, where
+// the sum measures the missing half (GradientCorrection::inner), and stays below U/2. There neighbours nearer than 0.65
+// Δx, and they alone, part in its place, or particles clump: their share of the sum, with the weight 1 − r²/(0.65 Δx)²,
+// lacks no half. (From 0.8 Δx on a rotating patch loses four times the energy.) What a moving particle then sees of the
+// field that it carries (arbitrary Lagrangian-Eulerian; Sun et al. 2019): dv/dt += (δv·∇)v and dρ/dt += δv·∇ρ, both
+// with corrected gradients.
 #pragma once
 
 #include "core/fields.h"
