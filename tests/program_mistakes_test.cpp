@@ -38,6 +38,11 @@ TEST_F(BadScene, Missing) {
   expect_refused(molten_program({"run", folder.path().string()}), 2, {"folder"});
 }
 
+TEST_F(BadScene, EmptyNames) {
+  for (const char* command : {"run", "resume", "check", "info", "render"})
+    expect_refused(molten_program({command, ""}), 2, {"is empty; name a file or folder", command});
+}
+
 TEST_F(BadScene, Garbage) {
   std::string bytes;
   for (int k = 0; k < 5000; ++k) bytes.push_back(static_cast<char>(k * 37 + k / 7));

@@ -137,6 +137,8 @@ TEST(StudyProbes, ADropAheadIsNoFront) {
   Cloud c = block_cloud(2, {1, 1, 0}, 0.1);
   c.position[0] = {5, 0, 0};
   EXPECT_NEAR(front_of(c), 1, 1e-12);
+  EXPECT_NEAR(front_of(c, 1), 5.05, 1e-12);
+  EXPECT_NEAR(front_of(c, 12), 0.9, 1e-12) << "a column further back";
 }
 
 TEST(StudyProbes, CountsTheClumped) {
